@@ -185,7 +185,18 @@ class SymplecticMap(Dynamics):
             name="%s times %s" % (short_text(times), self.name or "the map"))
 
     def tied(self) -> "SymplecticMap":
-        """The family whose parameters move together, from all lower to all upper ends."""
+        """The family whose parameters move together, from all lower to all upper ends.
+
+        Returns
+        -------
+        SymplecticMap
+            With one parameter, from -1 to 1; with none, if there was none.
+
+        Raises
+        ------
+        ValueError
+            An amplitude is not a finite decimal.
+        """
         amplitude, parts = self.enclosed
         return SymplecticMap(self.harmonics, amplitude,
                              [tuple(map(sum, zip(*parts)))] if parts else (), name=self.name)

@@ -94,12 +94,41 @@ class Problem:
         return source if isinstance(source, Problem) else cls(source)
 
     def part(self, region: Tuple[Ends, Ends], shifts: Shifts = ()) -> "Problem":
-        """The same map with another region, in the same frame, which moves by these shifts."""
+        """The same map with another region, in the same frame.
+
+        Parameters
+        ----------
+        region
+            The ranges of v0 and v1, in units of pi.
+        shifts
+            As for Problem.
+
+        Returns
+        -------
+        Problem
+            Without comments.
+
+        Raises
+        ------
+        ValueError
+            The region or the shifts are not as described.
+        """
         return replace(self, v0=region[0], v1=region[1], axes=self.frame, shifts=shifts,
                        comments=())
 
     def tied(self) -> "Problem":
-        """The problem whose parameters move together, from all lower to all upper ends."""
+        """The problem whose parameters move together, from all lower to all upper ends.
+
+        Returns
+        -------
+        Problem
+            Of map.tied().
+
+        Raises
+        ------
+        ValueError
+            An amplitude is not a finite decimal.
+        """
         return replace(self, map=self.map.tied())
 
     @classmethod

@@ -58,13 +58,23 @@ class Node:
 class ParameterMap(Kept):
     """The proofs over a region of parameter space, and the estimate that led the search.
 
-    region: "b=0", "a=b" or "c=0", with a, b, c >= 0.
-    down_to: how near to the estimated frontier the search was to come, as a ratio.
-    roots: of the trees of its faces.
-    estimate: by face, the estimated frontier: by s, the least radius at which single parameters
-    were proved with a certain effort.  Nothing that is proved rests on it.
-    seconds: that the search took.
-    sha256: of the file, uncompressed; "" if there is none.
+    Attributes
+    ----------
+    region
+        "b=0", "a=b" or "c=0", with a, b, c >= 0.
+    down_to
+        How near to the estimated frontier the search was to come, as a ratio.
+    roots
+        The roots of the trees of its faces.
+    estimate
+        By face, the estimated frontier: by s, the least radius at which single parameters were
+        proved with a certain effort.  Nothing that is proved rests on it.
+    seconds
+        The duration of the search.
+    version
+        The release of the program that did the work.
+    sha256
+        The SHA-256 of the file, uncompressed; "" if there is none.
     """
 
     region: str

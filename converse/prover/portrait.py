@@ -64,15 +64,25 @@ class Region:
 class Portrait(Kept):
     """The proved part of the phase space of a map of one angle.
 
-    problem -- the map, whose amplitudes may have one parameter, or up to three without strips
-    strip -- half the width of a column, in radians; 0: the columns are lines
-    even -- a point, in units of pi, about which V is even: then each column also stands for its
-        mirror image; None: there is none
-    depth -- the most cuts above a prism
-    columns -- how many columns the circle was to have
-    found -- by x*, the regions of the columns that are done
-    seconds -- that the search took
-    sha256 -- of the file, uncompressed; "" if there is none
+    Attributes
+    ----------
+    problem
+        The map, whose amplitudes may have one parameter, or up to three without strips.
+    strip
+        Half the width of a column, in radians; 0: the columns are lines.
+    even
+        A point, in units of pi, about which V is even: then each column also stands for its mirror
+        image.  None: there is none.
+    depth
+        The most cuts above a prism.
+    columns
+        How many columns the circle was to have.
+    found
+        By x*, the regions of the columns that are done.
+    seconds
+        The duration of the search.
+    sha256
+        The SHA-256 of the file, uncompressed; "" if there is none.
     """
 
     problem: Problem

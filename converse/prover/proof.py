@@ -21,13 +21,18 @@ from .tree import Leaf
 class Tree:
     """A starting point, and what was decided of a region of its successors.
 
-    problem: the map and the region.  Only regions of further starting points move with the
-    parameters.
-    xstar: the two angles of the starting point, in radians, as decimal strings; None: not yet
-    chosen.
-    text: one character for each prism, in preorder (docs/reference/proof-file.md).
-    pending: the hints of the untried prisms, in their order: how long an orbit to try first, as
-    their parents' tries suggest (0: unknown)."""
+    Attributes
+    ----------
+    problem
+        The map and the region.  Only regions of further starting points move with the parameters.
+    xstar
+        The two angles of the starting point, in radians, as decimal strings; None: not yet chosen.
+    text
+        One character for each prism, in preorder (docs/reference/proof-file.md).
+    pending
+        The hints of the untried prisms, in their order: how long an orbit to try first, as their
+        parents' tries suggest (0: unknown).
+    """
 
     problem: Problem
     xstar: Optional[Tuple[str, str]] = None
@@ -49,18 +54,29 @@ class Proof(Kept):
     finished search gives the same file, however it was interrupted and continued.  The file of an
     unfinished search also holds the seconds that it took.
 
-    trees: over the starting point of the problem and then, a, b, c, ..., over those to which prisms
-    of trees before them are linked.
-    settings: what was asked.
-    counts: the statistics of the search.
-    constants: the numbers of the theorem, as decimal strings: B, a bound of the largest eigenvalue
-    of beta, and with the thesis's method T, of its trace, and the limits of the uniform cones.
-    seconds: that the search took, as far as is known.
-    version: of the program that did the work.
-    at_once: nor have any s times these amplitudes tori, s > 1 (if there is one parameter, as where
-    a, b and c move together: s times those at its upper end).
-    restored: how many leaves were read from a file; links may have taken the place of some.
-    sha256: of the proof's file, uncompressed; "" if there is none.
+    Attributes
+    ----------
+    trees
+        Over the starting point of the problem and then, a, b, c, ..., over those to which prisms of
+        trees before them are linked.
+    settings
+        What was asked.
+    counts
+        The statistics of the search.
+    constants
+        The numbers of the theorem, as decimal strings: B, a bound of the largest eigenvalue of
+        beta, and with the thesis's method T, of its trace, and the limits of the uniform cones.
+    seconds
+        The duration of the search, as far as it is known.
+    version
+        The release of the program that did the work.
+    at_once
+        Whether no multiples of these amplitudes by s > 1 have tori (if there is one parameter, as
+        where a, b and c move together: multiples of those at its upper end).
+    restored
+        How many leaves were read from a file; links may have taken the place of some.
+    sha256
+        The SHA-256 of the proof's file, uncompressed; "" if there is none.
     """
 
     trees: Tuple[Tree, ...]
