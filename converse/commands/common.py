@@ -93,10 +93,13 @@ def seconds(text):
 
 
 def add_worker_options(p, what):
-    """Adds the options --jobs and --dask of a command that works on several `what` at a time."""
+    """Adds the options --jobs, --dask and --time-limit of a command that works on several `what`
+    at a time."""
     p.add_argument("--jobs", type=whole_number(1), metavar="N",
                    help="work on N %s at a time (default: one per core)" % what)
     p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
+    p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
+                   help="stop after about this time; -r continues")
 
 
 TOGETHER = "a, b and c move together along the segment from all lower to all upper ends"

@@ -11,7 +11,7 @@ from ..parameters.region import REGIONS
 from ..storage.files import ConverseError, plain
 from ..version import __version__
 from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
-                     ending, executor_of, number, say, seconds)
+                     ending, executor_of, number, say)
 
 COMMAND = "converse-map"
 DOWN_TO = "1.05"
@@ -50,8 +50,6 @@ def parser():
     p.add_argument("--tori", metavar="DIRECTORY", help="list the points at which DIRECTORY has "
                    "certificates of tori; with -g, draw them")
     add_worker_options(p, "cells")
-    p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
-                   help="stop after about this time; -r continues")
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 

@@ -1,12 +1,11 @@
 """The command: converse-portrait [INPUT] [-b FILE] [-g FILE]."""
 
-import math
 import sys
 
 from ..storage.files import ConverseError
 from ..version import __version__
 from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
-                     ending, executor_of, read_problem, say, seconds, whole_number)
+                     ending, executor_of, read_problem, say, whole_number)
 
 COMMAND = "converse-portrait"
 COLUMNS, DEPTH, DEEPEST, MOST = 600, 15, 1000, 1 << 16
@@ -47,8 +46,6 @@ def parser():
         "prove that there is an invariant circle of this rotation number, as converse-tori does, "
         "and draw it; may be given again"))
     add_worker_options(p, "columns")
-    p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
-                   help="stop after about this time; -r continues")
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 

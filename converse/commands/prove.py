@@ -14,7 +14,7 @@ from ..storage.files import ConverseError
 from ..version import __version__
 from .common import (MAP, REFRESH_SECONDS, SIGNALS, TOGETHER, Parser, ProgressLine,
                      add_worker_options, check_figure, command, ending, executor_of, number,
-                     read_problem, say, seconds, tell, whole_number)
+                     read_problem, say, tell, whole_number)
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
 ENDING = ending(
@@ -77,8 +77,6 @@ def parser():
     p.add_argument("--xstar", nargs=2, type=number, metavar=("X0", "X1"),
                    help="the starting point x*, angles in radians (default: the program chooses)")
     add_worker_options(p, "parts")
-    p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
-                   help="stop after about this time; the rest is undecided")
     p.add_argument("--list-inputs", action=ListInputs, nargs=0,
                    help="print the paths of the input files that come with the program, and exit")
     p.add_argument("--version", action="version", version="converse " + __version__)

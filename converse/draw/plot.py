@@ -8,6 +8,7 @@ import math
 import re
 import textwrap
 from fractions import Fraction
+from functools import partial
 
 from ..model.exact import short_text
 from ..prover import tree
@@ -75,6 +76,15 @@ def encode(figure, kind, **options):
     return PS_DATE.sub(b"", data.getvalue()) if kind == "eps" else data.getvalue()
 
 
+def _figure(**options):
+    """A Figure that no window and no notebook's backend knows of: it draws itself."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(**options)
+    figure._repr_png_ = partial(encode, figure, "png", dpi=100)     # for a notebook
+    return figure
+
+
 def new(width, height, fill, layout=None):
     """A Figure that a notebook shows, of that size in inches.  fill(figure) draws it; the user's
     settings do not matter to it.  fill may return a caption, which is written below.  layout is an
@@ -82,10 +92,8 @@ def new(width, height, fill, layout=None):
     check()
     from matplotlib import style
 
-    from .page import Page
-
     with style.context(["default", STYLE]):
-        figure = Page(encode, figsize=(width, height), layout=layout)
+        figure = _figure(figsize=(width, height), layout=layout)
         words = fill(figure)
         if layout is None:
             figure.subplots_adjust(left=0.55 / width, right=1 - 0.1 / width, bottom=0.5 / height,
@@ -130,9 +138,7 @@ def page(proof, caption=True):
     check()
     from matplotlib.ticker import MaxNLocator
 
-    from .page import Page
-
-    fig = Page(encode, figsize=(6.4, 7.0))
+    fig = _figure(figsize=(6.4, 7.0))
     axes = draw(proof, fig.add_subplot())
     if caption:
         head, foot = ("\n".join(lines).replace("$", r"\$")

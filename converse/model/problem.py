@@ -348,6 +348,13 @@ def periods(frame: Frame) -> Tuple[Fraction, Fraction]:
     return Fraction(2 * common, abs(f00 * f11 - f01 * f10)), Fraction(2, common)
 
 
+def inverse(frame: Frame) -> Tuple[Tuple[Fraction, Fraction], ...]:
+    """The rows of the inverse of a frame."""
+    a, b, c, d = frame
+    determinant = Fraction(a * d - b * c)
+    return (d / determinant, -b / determinant), (-c / determinant, a / determinant)
+
+
 def bezout(a: int, b: int) -> Tuple[int, int]:
     """(x, y) with a x + b y = 1, where there are such integers."""
     if b == 0:

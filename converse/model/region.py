@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import List, Optional, Sequence, Tuple
 
 from .exact import Ends, pi_bounds, rounded, sine_bounds
-from .problem import IDENTITY, Frame, Problem, bezout, periods
+from .problem import IDENTITY, Frame, Problem, bezout, inverse, periods
 
 EXCHANGED = 0, 1, 1, 0              # the frame with v0 and v1 for the second angle and the first
 DIAGONALS = 1, 1, 1, -1             # v0 along the diagonal, v1 across it
@@ -83,9 +83,7 @@ def reversal_centre(problem: Problem, xstar: Point) -> Ends:
     F^-1 (x* - V'(x*)/2), that is r.x* + sum of (r.k) p cos(k.x* + phase)/2 over the waves that are
     examined, r the first row of F^-1.  It is affine in the parameters, whose shifts of v0 are
     subtracted."""
-    f00, f01, f10, f11 = problem.frame
-    det = f00 * f11 - f01 * f10
-    row, star = (Fraction(f11, det), Fraction(-f01, det)), tuple(map(Fraction, xstar))
+    row, star = inverse(problem.frame)[0], tuple(map(Fraction, xstar))
     ends = [row[0] * star[0] + row[1] * star[1]] * 2
     moves = [[Fraction(0)] * 2 for _ in problem.parts]
     for j in problem.searched:

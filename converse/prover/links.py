@@ -13,7 +13,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..model.exact import Ends, pi_bounds, root_bounds, sine_bounds
 from ..model.map import SymplecticMap
-from ..model.problem import Problem, Shifts
+from ..model.problem import Problem, Shifts, inverse
 from . import tree
 from .proof import Tree
 
@@ -70,7 +70,7 @@ class Link:
         bound of B, of all parameters of the problem."""
         start, end = ([Fraction(x) for x in point] for point in (here, there))
         step = [(b - a) / PIECES for a, b in zip(start, end)]
-        l, inverse = least_slope(largest), _inverse(problem.frame)
+        l, rows = least_slope(largest), inverse(problem.frame)
         if start == end:                # roots are rounded up
             return cls(((Fraction(0), Fraction(0)),) * 2)
         middle, radius = [Fraction(0)] * 2, [Fraction(0)] * 2
@@ -79,7 +79,7 @@ class Link:
             d = _spread(problem, l, centre, [abs(x) / 2 for x in step])
             moved = _applied(d, step)
             width = _dot(step, moved)
-            for i, u in enumerate(inverse):
+            for i, u in enumerate(rows):
                 middle[i] += l * _dot(u, step) + _dot(u, moved) / 2
                 radius[i] += _root(max(Fraction(0), _dot(u, _applied(d, u)) * width)) / 2
         return cls(tuple(_over_pi(m - r, m + r) for m, r in zip(middle, radius)))
@@ -142,13 +142,6 @@ def _applied(d, x):
 
 def _dot(x, y):
     return x[0] * y[0] + x[1] * y[1]
-
-
-def _inverse(frame):
-    """The rows of F^-1."""
-    a, b, c, d = map(Fraction, frame)
-    determinant = a * d - b * c
-    return (d / determinant, -b / determinant), (-c / determinant, a / determinant)
 
 
 def _over_pi(low, high):
