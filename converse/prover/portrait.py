@@ -178,10 +178,12 @@ class Portrait(Kept):
         """What is proved, in words."""
         shares = [self.share(x) for x in self.found]
         of = "phase space" if self.strip else "the successors in them, on average"
-        lines = ["THEOREM, for the proved prisms", *map_lines(self.problem),
-                 *ended([*indented(["has no rotational invariant circle through the points "
-                                    "(y, y' - y) of these prisms that lie in no undecided prism",
-                                    *conditions(self.problem)])]), ""]
+        proved = any("P" in region.tree for each in self.found.values() for region in each)
+        claim = ["has no rotational invariant circle through the points (y, y' - y) of these "
+                 "prisms that lie in no undecided prism"] if proved else ["was examined"]
+        lines = ["THEOREM, for the proved prisms" if proved else "UNDECIDED: nothing is proved.",
+                 *map_lines(self.problem),
+                 *ended([*indented([*claim, *conditions(self.problem)])]), ""]
         lines += ["Columns : %d of %d%s%s" % (
             len(self.found), len(self.stars), "" if self.even is None else
             ", and their mirror images about %s pi" % self.even,
@@ -189,8 +191,9 @@ class Portrait(Kept):
             "Undecided : %s of %s" % (decimal_text(self.undecided), of)]
         if shares:
             lines += ["Undecided in a column : from %.4f to %.4f" % (min(shares), max(shares))]
-        if not any("P" in region.tree for each in self.found.values() for region in each):
-            lines += ["Nothing is proved : give a depth above %d (--depth)" % self.depth]
+        if not proved:
+            lines += ["To try : " + ("a depth above %d (--depth)" % self.depth if shares else
+                                     "more time, from a file (-b FILE, then -r FILE)")]
         lines += ["Time : %.0f seconds" % self.seconds]
         lines += ["SHA-256 : " + self.sha256] if self.sha256 else []
         return "\n".join(lines) + "\n"

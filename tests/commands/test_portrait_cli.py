@@ -70,7 +70,9 @@ def test_bad_usage_is_one_line(run, inputs, tmp_path, monkeypatch, name, argumen
 def test_depth_that_proves_nothing_is_told(run, inputs):
     status, out, err = run(inputs["standard"], "--columns", 30, "--depth", 1, "--lines")
     assert (status, err) == (1, "")
-    assert "Undecided : 1 of" in out and "give a depth above 1 (--depth)" in out
+    assert "Undecided : 1 of" in out and "To try : a depth above 1 (--depth)" in out
+    status, out, err = run(inputs["standard"], "--time-limit", 0)
+    assert (status, err) == (1, "") and out.startswith("UNDECIDED") and "To try : more time" in out
 
 
 @pytest.mark.parametrize("change, word", [

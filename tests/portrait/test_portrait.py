@@ -262,7 +262,9 @@ def test_bad_maps():
 
 def test_depth_that_proves_nothing_is_told(tmp_path):
     portrait = portray(standard("0.3"), path=tmp_path / "flat", columns=20, depth=1)
-    assert portrait.undecided == 1 and "Nothing is proved : give a depth" in portrait.report()
+    assert portrait.undecided == 1 and "\nTo try : a depth above" in portrait.report()
+    assert portrait.report().startswith("UNDECIDED: nothing is proved.\n  The map  ")
+    assert "THEOREM" not in portrait.report() and "circle through" not in portrait.report()
     with pytest.raises(check.Rejected, match="claims no theorem"):
         check.verify(tmp_path / "flat")
 
