@@ -29,7 +29,8 @@ ENDING = ending(
 def _ratio(text):
     ratio = number(text)
     if not 1 < ratio <= 100:
-        raise argparse.ArgumentTypeError("'%.40s' is not a number from 1 to 100, as 1.05 is" % text)
+        raise argparse.ArgumentTypeError("'%.40s' is not a number above 1, at most 100, as 1.05 is"
+                                         % text)
     return ratio
 
 
