@@ -14,8 +14,7 @@ from converse.model.region import skips, symmetries_used
 from converse.prover import native, tree
 from converse.prover.links import (PI, SPARE, Link, Links, Target, hull_of, linked_tree, region_of,
                                    wrong_letter)
-from converse.prover.proof import Tree
-from converse.prover.proof_file import load, save
+from converse.prover.proof import Proof, Tree
 from converse.prover.run import ready
 from converse.storage import files
 
@@ -63,7 +62,7 @@ def test_no_whole_proof_has_shifts(tmp_path):
         with pytest.raises(ValueError, match="give no shifts"):
             prove(problem, method=method)
     with pytest.raises(ValueError, match="does not move"):
-        save(Proof((Tree(problem),)), tmp_path / "proof")
+        Proof((Tree(problem),)).save(tmp_path / "proof")
     wide = replace(line("0.02", "0.021"), v0=(0, 2), v1=(0, 2))
     assert symmetries_used(wide, HERE) == []
     assert symmetries_used(replace(wide, shifts=SHIFTS), HERE) is None
@@ -284,15 +283,15 @@ def test_the_lines_of_a_part(moved, tmp_path):
     moved.save(path)
     text = path.read_text()
     assert re.search(r"part: b\nxstar: 0.85 0.85\nv0: \S+ \S+ -0.04\nv1: \S+ \S+ 0\ntree:", text)
-    again = load(path)
+    again = Proof.load(path)
     assert timeless(again) == timeless(moved) and again.parts[1].problem.shifts
     half = moved.with_tree(1, problem=replace(moved.parts[0].problem, shifts=()))
     half.save(path)
     assert re.search(r"part: a\nxstar: 0.858 0.858\nv0: \S+ \S+\nv1: \S+ \S+\n", path.read_text())
-    assert timeless(load(path)) == timeless(half)
+    assert timeless(Proof.load(path)) == timeless(half)
     still = half.with_tree(2, problem=replace(half.parts[1].problem, shifts=((0, 0),)))
     still.save(path)
-    assert timeless(load(path)) == timeless(still)
+    assert timeless(Proof.load(path)) == timeless(still)
 
 
 @pytest.mark.parametrize("change, wrong", [
@@ -312,14 +311,14 @@ def test_the_lines_of_a_part(moved, tmp_path):
                          re.sub("(wave: .*) .*\n", r"\1\n", text)), "v0 .* 5 numbers, not 2[^ ]")])
 def test_wrong_numbers_of_parts(moved, tmp_path, change, wrong):
     with pytest.raises(ConverseError, match=wrong) as caught:
-        load(changed(moved, tmp_path / "proof", change))
+        Proof.load(changed(moved, tmp_path / "proof", change))
     assert "\n" not in str(caught.value)
 
 
 def test_a_part_may_have_two_numbers(moved, tmp_path):
     path = changed(moved, tmp_path / "proof", lambda text: re.sub(
         "(part: b\n.*\n.*\nv1: .*) 0\n", r"\1\n", text))
-    assert timeless(load(path)) == timeless(moved)
+    assert timeless(Proof.load(path)) == timeless(moved)
 
 
 def test_wrong_shifts_are_not_resumed(moved, tmp_path):
@@ -334,7 +333,7 @@ def test_interrupted(begun, moved, tmp_path, monkeypatch, moment):
     """A backup is read and continued to the same proof."""
     path, calls = tmp_path / "backup", []
     begun.save(path)
-    assert timeless(load(path)) == timeless(begun)
+    assert timeless(Proof.load(path)) == timeless(begun)
 
     def interrupts(*_):
         calls.append(1)
