@@ -14,7 +14,7 @@ from converse.model.region import skips, symmetries_used
 from converse.prover import native, tree
 from converse.prover.links import (PI, SPARE, Link, Links, Target, hull_of, linked_tree, region_of,
                                    wrong_letter)
-from converse.prover.proof import Proof, Tree
+from converse.prover.proof import Tree
 from converse.prover.run import ready
 from converse.storage import files
 
