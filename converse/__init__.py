@@ -8,7 +8,7 @@
 
 from .version import __version__
 
-TYPE_CHECKING = False           # as in typing, whose import takes 10 ms of the start of a command
+TYPE_CHECKING = False           # as in typing, whose import would delay the handlers of signals
 if TYPE_CHECKING:
     from . import check, orbits, parameters, tori
     from .model.inputs import read_input
