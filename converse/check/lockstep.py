@@ -60,7 +60,8 @@ def sums_and_products():
 
 
 def import_numpy_if_sound():
-    """Imports numpy.  Does it round to nearest, also below 2^-1022, and halves to even?"""
+    """Imports numpy.  Does it round to nearest, also below 2^-1022, and halves to even, and are its
+    integers modulo 2^64?"""
     global np
     import numpy as np
     *operands, exact = sums_and_products()
@@ -69,7 +70,8 @@ def import_numpy_if_sound():
     with np.errstate(all="ignore"):
         return [found.tolist() for found in (x + y, x - y, x * y, x / y, x - one)] == exact \
             and (np.array([2.0 ** -1022] * 9) / 2 * 2).tolist() == [2.0 ** -1022] * 9 \
-            and np.rint(np.array([0.5, 1.5, -2.5, 0.49, 7.0])).tolist() == [0, 2, -2, 0, 7]
+            and np.rint(np.array([0.5, 1.5, -2.5, 0.49, 7.0])).tolist() == [0, 2, -2, 0, 7] \
+            and (np.array([[3, -1]], np.int64) @ [[1 << 62], [1 << 62]]).tolist() == [[-1 << 63]]
 
 
 def whole(turns):

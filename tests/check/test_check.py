@@ -2519,6 +2519,18 @@ def test_long_orbits_are_followed_fewer_at_a_time(np, root, tmp_path, monkeypatc
     assert refused is None and fast.batch < check.BATCH and min(pieces) == 1
 
 
+@pytest.mark.skipif(TORTURE == 1, reason="minutes; make torture has it")
+def test_the_standard_map_nearest_to_break_up(np, root, tmp_path):
+    """Orbits of 19,808 points: whole, and in doubles alone, where the integers would take days."""
+    proof = prove(read_input(root / "inputs" / "standard-9717.in"), method="loewner")
+    proof.save(tmp_path / "a")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(check.Criterion, "excluded", lambda *_: ("not in doubles", 0))
+        result = check.verify(tmp_path / "a")
+    assert result and "\na = 0.9717\n" in result.text
+    assert "Proved leaves checked : %d, " % proof.counts.proved in result.text
+
+
 # ---- the bound B
 
 def eigenvalue(amplitudes, y, waves=TRIG):

@@ -73,7 +73,7 @@ def test_the_standard_map():
 def test_the_inputs_of_the_standard_map():
     """Their points and prisms are those of the golden outputs."""
     head, *table = rows("method.md", "input")
-    assert head[2:] == ["points of the longest orbit", "prisms"] and len(table) == 4
+    assert head[2:] == ["points of the longest orbit", "prisms"] and len(table) == 5
     for name, _, points, prisms in table:
         name = re.match("`(.*?).in`", name)[1]
         report = (ROOT / "golden_outputs" / "loewner" / (name + ".out")).read_text("utf-8")
