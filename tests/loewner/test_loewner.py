@@ -550,7 +550,8 @@ def bound_margins(prism, q, out, plain, disturbed=False):
         omega = [n0 ** 2, n1 ** 2, (n0 + n1) ** 2]
         exact += 2 * (omega[0] + omega[1]) - 2 * (n0 * after[0] + n1 * after[1])
         mass += 2 * (omega[0] + omega[1] + abs(n0 * after[0]) + abs(n1 * after[1]))
-        weights = 4 * (omega[0] + omega[1]) + 2 * (abs(m[0]) + abs(m[1]))
+        most_k = 2 if size[2] else 1                    # of the waves that there are
+        weights = most_k ** 2 * (omega[0] + omega[1]) + most_k * (abs(m[0]) + abs(m[1]))
         for k in range(3):
             A = m[k] * q[j].cos[k] - omega[k] * q[j].sin[k]
             B = -omega[k] * q[j].cos[k] - m[k] * q[j].sin[k]
