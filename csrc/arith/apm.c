@@ -177,41 +177,55 @@ int apm_set_d(apm_t r, double x)
     return APM_OK;
 }
 
-/* m = x 2^shift is cut off to 130 bits, or exact with fewer.  The double below |m| and what m has
-   more are added, so there is one rounding, and a second one where the result is below 2^-1022. */
 double apm_get_d(const apm_t x)
 {
-    long shift = 0, excess;
-    double high;
-    mpz_t m, power;
+    /* Bring the integer near 17 digits first, so that neither factor can overflow. */
+    const long excess = (long)mpz_sizeinbase(x->mant, 10) - 20;
+    double result;
+    mpz_t m;
 
-    mpz_inits(m, power, NULL);
-    mpz_ui_pow_ui(power, 10UL, (unsigned long)labs(x->exp));
-    if (x->exp >= 0) {
-        mpz_mul(m, x->mant, power);
-    } else {
-        shift = 128 + (long)mpz_sizeinbase(power, 2) - (long)mpz_sizeinbase(x->mant, 2);
-        shift = shift > 0 ? shift : 0;
-        mpz_mul_2exp(m, x->mant, (mp_bitcnt_t)shift);
-        mpz_tdiv_q(m, m, power);
-    }
-    excess = (long)mpz_sizeinbase(m, 2) - 130;
-    if (excess > 0) {
-        mpz_tdiv_q_2exp(m, m, (mp_bitcnt_t)excess);
-        shift -= excess;
-    }
-    high = mpz_get_d(m);
-    mpz_set_d(power, high);
-    mpz_sub(m, m, power);
-    high += mpz_get_d(m);
-    mpz_clears(m, power, NULL);
-    return ldexp(high, (int)-shift);
+    if (mpz_sgn(x->mant) == 0)
+        return 0.0;
+    mpz_init(m);
+    if (excess > 0)
+        shift_down(m, x->mant, excess, APM_TRUNC);
+    else
+        mpz_set(m, x->mant);
+    const long exp = x->exp + (excess > 0 ? excess : 0);
+    /* A decimal string and strtod would round correctly and cost ten times as much. */
+    if (exp < -330)
+        result = 0.0;
+    else if (exp > 310)
+        result = mpz_sgn(m) * HUGE_VAL;
+    else if (exp < -22)
+        result = mpz_get_d(m) / pow(10.0, 22) * pow(10.0, (double)(exp + 22));
+    else
+        result = exp < 0 ? mpz_get_d(m) / pow(10.0, (double)-exp)
+                         : mpz_get_d(m) * pow(10.0, (double)exp);
+    mpz_clear(m);
+    return result;
+}
+
+double apm_nearest_d(const apm_t x)
+{
+    const double d = apm_get_d(x);
+    apm_t rest;
+    double result;
+
+    if (!isfinite(d))
+        return d;
+    apm_init(rest);
+    apm_set_d(rest, d);
+    apm_sub(rest, x, rest);
+    result = d + apm_get_d(rest);
+    apm_clear(rest);
+    return result;
 }
 
 double apm_bound_d(const apm_t x, apm_round_t dir)
 {
     const double end = dir == APM_UP ? HUGE_VAL : -HUGE_VAL;
-    double d = apm_get_d(x);
+    double d = apm_nearest_d(x);
     apm_t found;
 
     apm_init(found);

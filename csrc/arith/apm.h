@@ -34,7 +34,8 @@ void apm_set(apm_t r, const apm_t x);
 void apm_set_si(apm_t r, long n, long exp);             /* n * 10^exp */
 int apm_set_str(apm_t r, const char *text);            /* [+-]digits[.digits][e[+-]digits] */
 int apm_set_d(apm_t r, double x);      /* exactly; APM_ERANGE if x is not finite */
-double apm_get_d(const apm_t x);        /* within an ulp of x; x itself if x is a double */
+double apm_get_d(const apm_t x);                        /* within an ulp or two; 0 if too small */
+double apm_nearest_d(const apm_t x);    /* and of a double itself that double */
 double apm_bound_d(const apm_t x, apm_round_t dir);     /* APM_DOWN: <= x; APM_UP: >= x; close to
                                            it, and infinite where doubles end */
 char *apm_get_str(const apm_t x);       /* exact; the caller frees; NULL: no memory */

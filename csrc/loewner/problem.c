@@ -148,7 +148,7 @@ int cut_helps(const loewner *w, const cv_cell *cell, int axis)
 /* A double d with |d - x| <= 2^-50 |x|, or else NaN, with which nothing is proved. */
 static double near(const apm_t x)
 {
-    const double d = apm_get_d(x);
+    const double d = apm_nearest_d(x);
     apm_t error, scaled;
     int good;
 
@@ -187,7 +187,7 @@ static const engine *fastest_engine(void)
 /* A double that is not less than x >= 0. */
 static double above(const apm_t x)
 {
-    return apm_sgn(x) == 0 ? 0.0 : apm_get_d(x) * (1.0 + 0x1p-50) + 0x1p-1070;
+    return apm_sgn(x) == 0 ? 0.0 : apm_nearest_d(x) * (1.0 + 0x1p-50) + 0x1p-1070;
 }
 
 /* ---- numbers in turns */

@@ -396,7 +396,7 @@ int loewner_answer(const question *q)
         (r.any ? !set_any(&problem, q, kernel->more) : q->nin != BOX + kernel->more))
         return CV_EARGUMENT;
     for (int j = 0; j < kernel->more; j++) {
-        r.more[j] = apm_get_d(q->in[q->nin - kernel->more + j]);
+        r.more[j] = apm_nearest_d(q->in[q->nin - kernel->more + j]);
         if (!(fabs(r.more[j]) < (j == 0 ? kernel->first : kernel->others)))
             return CV_EARITHMETIC;
     }

@@ -154,7 +154,7 @@ static int sine_and_cosine(long dp, apm_t in[], apm_t out[])
     double sine, cosine;
 
     (void)dp;
-    double_sincos(&sine, &cosine, apm_get_d(in[0]));
+    double_sincos(&sine, &cosine, apm_nearest_d(in[0]));
     if (!isfinite(sine) || !isfinite(cosine))
         return CV_EARITHMETIC;
     apm_set_d(out[0], sine);
@@ -164,8 +164,8 @@ static int sine_and_cosine(long dp, apm_t in[], apm_t out[])
 
 static int sines_ns(long dp, apm_t in[], apm_t out[]) /* x, n -> nanoseconds of three, n times */
 {
-    double t[3] = { apm_get_d(in[0]), 1.0, 2.0 }, cosine[3] = { 0.0, 0.0, 0.0 };
-    const double repeat = apm_get_d(in[1]);
+    double t[3] = { apm_nearest_d(in[0]), 1.0, 2.0 }, cosine[3] = { 0.0, 0.0, 0.0 };
+    const double repeat = apm_nearest_d(in[1]);
     const clock_t begin = clock();
 
     (void)dp;
