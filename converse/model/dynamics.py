@@ -37,13 +37,29 @@ class Dynamics:
         -------
         y', J'
             Arrays of the shape of y and J.
+
+        Raises
+        ------
+        ValueError
+            An array has another shape, eps is not finite, or a parameter of the map has a range.
         """
         y, J, gradient, _ = self._at(y, J, eps)
         J = J - gradient
         return y + J, J
 
     def inverse(self, y: Any, J: Any, eps: float = 1.0) -> "Tuple[np.ndarray, np.ndarray]":
-        """The points whose images these are; arguments and results as of map()."""
+        """The points whose images these are.
+
+        Parameters
+        ----------
+        y, J, eps
+            As of map(), with the same errors.
+
+        Returns
+        -------
+        y, J
+            Arrays of the shape of y and J.
+        """
         import numpy as np
 
         y, J = np.broadcast_arrays(np.asarray(y, float), np.asarray(J, float))
@@ -51,8 +67,18 @@ class Dynamics:
         return before, J + gradient
 
     def jacobian(self, y: Any, eps: float = 1.0) -> "np.ndarray":
-        """The derivative of map() at y, which does not depend on J: array (..., 2n, 2n), angles
-        before momenta, that is, [[1 - eps V'', 1], [-eps V'', 1]]."""
+        """The derivative of map() at y, which does not depend on J.
+
+        Parameters
+        ----------
+        y, eps
+            As of map(), with the same errors.
+
+        Returns
+        -------
+        array (..., 2n, 2n)
+            Angles before momenta, that is, [[1 - eps V'', 1], [-eps V'', 1]].
+        """
         y, _, _, bend = self._at(y, 0.0, eps)
         n = self.dimension
         shape = y.shape[:-1] if y.shape[-1:] == (n,) else y.shape
@@ -60,8 +86,20 @@ class Dynamics:
 
     def orbit(self, y: Any, J: Any, steps: int,
               eps: float = 1.0) -> "Tuple[np.ndarray, np.ndarray]":
-        """The orbits of points: arrays (|steps| + 1, ...), the first row the points themselves;
-        backwards if steps < 0."""
+        """The orbits of points.
+
+        Parameters
+        ----------
+        y, J, eps
+            As of map(), with the same errors.
+        steps
+            A whole number below 2^31 in size; if it is negative the orbits go backwards.
+
+        Returns
+        -------
+        y, J
+            Arrays (abs(steps) + 1, ...), whose first rows are the points themselves.
+        """
         import numpy as np
 
         steps = _steps(steps)

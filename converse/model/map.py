@@ -104,7 +104,12 @@ class SymplecticMap(Dynamics):
     @classmethod
     def read(cls, source: Any) -> "SymplecticMap":
         """The map of an input file (docs/reference/inputs.md): the five lines of 1989, or JSON.
-        Parameters and errors as of converse.read_input."""
+
+        Parameters
+        ----------
+        source
+            As of converse.read_input, with the same errors.
+        """
         from .inputs import read_input
         return read_input(source).map
 
@@ -176,8 +181,18 @@ class SymplecticMap(Dynamics):
             ) if values else self
 
     def scaled(self, factor: Number) -> "SymplecticMap":
-        """The map whose amplitudes are multiplied by an exact number.  TypeError, ValueError: it is
-        not an exact number."""
+        """The map whose amplitudes are multiplied by a number.
+
+        Parameters
+        ----------
+        factor
+            An exact number, as for SymplecticMap.
+
+        Raises
+        ------
+        TypeError, ValueError
+            The factor is not an exact number.
+        """
         times = exact(factor)
         return replace(
             self, amplitude=tuple(times * p for p in self.amplitude),
@@ -202,7 +217,13 @@ class SymplecticMap(Dynamics):
                              [tuple(map(sum, zip(*parts)))] if parts else (), name=self.name)
 
     def potential(self) -> FourierSum:
-        """V alone, exactly.  ValueError: a parameter has a range, and so no value."""
+        """V alone, exactly.
+
+        Raises
+        ------
+        ValueError
+            A parameter has a range, and so no value.
+        """
         for m, (low, high) in enumerate(self.ranges):
             if low != high:
                 name = self.names[m] if self.names else "an amplitude"
@@ -234,6 +255,11 @@ def StandardMap(k: Union[Range, Number]) -> SymplecticMap:
     ----------
     k
         A number or a range (low, high), exact.
+
+    Raises
+    ------
+    TypeError, ValueError
+        k is not as described.
     """
     return SymplecticMap([(1, 0, "-1/2")], [0], [[1]], [k], ["k"], "standard map")
 
@@ -245,6 +271,11 @@ def FroeschleMap(k: Union[Range, Number], b: Union[Range, Number]) -> Symplectic
     ----------
     k, b
         A number or a range (low, high), exact.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An argument is not as described; the text names the parameter.
     """
     return SymplecticMap([(1, 0, "-1/2"), (0, 1, "-1/2"), (1, 1, "-1/2")], [0] * 3,
                          [[1, 1, 0], [0, 0, 1]], [k, b], ["k", "b"], "Froeschlé map")
@@ -263,6 +294,11 @@ def MuldoonMap(a: Union[Range, Number, None] = None, b: Union[Range, Number, Non
         In the place of a, b and c: a = b = c/2 = 11.21436 epsilon.
     together
         The three ranges are one parameter: the segment from all lower to all upper ends.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An argument is not as described, or epsilon is given beside a, b or c.
     """
     if not isinstance(together, bool):
         raise TypeError("together must be True or False, not %r" % (together,))
@@ -293,6 +329,11 @@ def FourierMap(harmonics: Mapping[Any, Amplitude], *, name: str = "",
         Of the map, for reports.
     parameters
         The values or ranges of the parameters.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An argument is not as described, or no amplitude depends on a parameter.
     """
     waves = [(k, 0) if isinstance(k, int) else k for k in harmonics]
     return affine(waves, list(harmonics.values()), parameters, name)

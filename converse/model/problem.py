@@ -90,7 +90,18 @@ class Problem:
 
     @classmethod
     def of(cls, source: "Union[SymplecticMap, Problem]") -> "Problem":
-        """The problem, or the problem of a map and all of the torus."""
+        """The problem, or the problem of a map and all of the torus.
+
+        Parameters
+        ----------
+        source
+            A problem, which is returned, or a map.
+
+        Raises
+        ------
+        TypeError, ValueError
+            The source is neither, or an amplitude of the map is not a finite decimal.
+        """
         return source if isinstance(source, Problem) else cls(source)
 
     def part(self, region: Tuple[Ends, Ends], shifts: Shifts = ()) -> "Problem":

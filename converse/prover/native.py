@@ -75,23 +75,49 @@ MAXIMA = "most_cuts", "max_steps", "max_NTsteps"    # of Counts: all other field
 
 @dataclass(frozen=True)
 class Counts:
-    """The statistics of a search; names after the thesis and csrc/converse.h."""
+    """The statistics of a search; names after the thesis and csrc/converse.h.
 
-    quick_tries: int = 0        # of prisms on their centre alone (thesis's method)
-    tries: int = 0              # in double precision; with the sharper method, rigorous ones
-    Rtries: int = 0             # in exact decimals
-    cuts: int = 0               # nodes of the tree by kind
+    Attributes
+    ----------
+    quick_tries
+        Tries of prisms on their centre alone (thesis's method).
+    tries
+        Tries in double precision; with the sharper method they are rigorous.
+    Rtries
+        Tries in exact decimals.
+    cuts, proved, symmetric, undecided
+        The nodes of the tree by kind.
+    HermSuccess, LLSuccess
+        Prisms proved by the trace, and by the least eigenvalue.
+    ll_used
+        Best bounds by maxBlam, by minBlam and by the trace.
+    reasons
+        Tries without a proof, in the order of report.REASONS.
+    most_cuts
+        The most cuts of a proved prism.
+    max_steps
+        The longest orbit of the tries in double precision (thesis's method).
+    max_NTsteps
+        The longest orbit of a proved prism.
+    linked
+        Leaves linked to another part, of which the core knows nothing.
+    """
+
+    quick_tries: int = 0
+    tries: int = 0
+    Rtries: int = 0
+    cuts: int = 0
     proved: int = 0
     symmetric: int = 0
     undecided: int = 0
-    HermSuccess: int = 0        # prisms proved by the trace, and by the least eigenvalue
+    HermSuccess: int = 0
     LLSuccess: int = 0
-    ll_used: Tuple[int, ...] = (0, 0, 0)    # best bounds by maxBlam, minBlam and the trace
-    reasons: Tuple[int, ...] = (0,) * lib.CV_N_REASONS  # tries without a proof, as report.REASONS
-    most_cuts: int = 0          # of a proved prism
-    max_steps: int = 0          # longest orbit of the tries in double precision (thesis's method)
-    max_NTsteps: int = 0        # longest orbit of a proved prism
-    linked: int = 0             # leaves linked to another part, of which the core knows nothing
+    ll_used: Tuple[int, ...] = (0, 0, 0)
+    reasons: Tuple[int, ...] = (0,) * lib.CV_N_REASONS
+    most_cuts: int = 0
+    max_steps: int = 0
+    max_NTsteps: int = 0
+    linked: int = 0
 
     def __add__(self, other):
         """The statistics of both searches together."""

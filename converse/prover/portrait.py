@@ -97,8 +97,18 @@ class Portrait(Kept):
     @classmethod
     def new(cls, source: Union[SymplecticMap, Problem], columns: int = 600, depth: int = 15,
             strips: bool = True) -> "Portrait":
-        """An empty portrait of a map, for which portray() finds the columns.  Parameters and errors
-        as of portray()."""
+        """An empty portrait of a map, for which portray() finds the columns.
+
+        Parameters
+        ----------
+        source, columns, depth, strips
+            As of portray().
+
+        Raises
+        ------
+        TypeError, ValueError
+            The numbers or the map do not suit.
+        """
         problem = _of_circle(Problem.of(source))
         for name, value, most in (("columns", columns, MOST_COLUMNS), ("depth", depth, 1000)):
             if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
@@ -150,7 +160,18 @@ class Portrait(Kept):
     # ---- what is proved
 
     def share(self, xstar: Fraction) -> Fraction:
-        """At most this share of a column is undecided."""
+        """At most this share of a column is undecided.
+
+        Parameters
+        ----------
+        xstar
+            The x* of a column that is done, a key of `found`.
+
+        Returns
+        -------
+        Fraction
+            From 0 to 1.
+        """
         angle = self.problem.waves[0][0] * self.strip
         lost = sum(2 * region.half * number / 2 ** (cuts + (along if self.strip else 0))
                    for region in self.found[xstar]

@@ -60,7 +60,7 @@ class Proof(Kept):
         Over the starting point of the problem and then, a, b, c, ..., over those to which prisms of
         trees before them are linked.
     settings
-        What was asked.
+        What was asked.  The proof also has its method, depth, digits and as_printed as attributes.
     counts
         The statistics of the search.
     constants
@@ -122,7 +122,15 @@ class Proof(Kept):
         return self.trees[1:]
 
     def with_tree(self, number: int, **changes: Any) -> "Proof":
-        """The proof with changes of one of its trees."""
+        """The proof with changes of one of its trees.
+
+        Parameters
+        ----------
+        number
+            The index of the tree in `trees`; 0 is the tree of the problem.
+        changes
+            New values of attributes of the Tree, by name.
+        """
         trees = list(self.trees)
         trees[number] = replace(trees[number], **changes)
         return replace(self, trees=tuple(trees))

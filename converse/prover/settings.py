@@ -60,7 +60,23 @@ class Settings:
 
     def accept(self, problem: Problem) -> Problem:
         """The problem as this method takes it: the thesis's method has neither frames nor a
-        coordinate that is examined alone.  ValueError: the method cannot treat the problem."""
+        coordinate that is examined alone.
+
+        Parameters
+        ----------
+        problem
+            The problem as it was asked.
+
+        Returns
+        -------
+        Problem
+            The problem itself, or with the thesis's method, without a frame and `alone`.
+
+        Raises
+        ------
+        ValueError
+            The method cannot treat the problem.
+        """
         if problem.shifts:
             raise ValueError("only the region of a further starting point moves with the "
                              "parameters, not that of a whole proof: give no shifts")
