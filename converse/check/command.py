@@ -108,7 +108,13 @@ def command(argv, options):
 
 
 def main(argv=None):
-    """Runs the command and returns its exit status; every failure is one line."""
+    """Runs the command and returns its exit status; every failure is one line.
+
+    Parameters
+    ----------
+    argv
+        The arguments; None: those of the process, whose signals are then handled.
+    """
     options = argparse.Namespace(file="", state=None)
     with interruptible(argv is None):
         try:

@@ -67,14 +67,33 @@ class Face:
 
 @dataclass(frozen=True)
 class ParameterMap:
-    """The content of a map."""
+    """The content of a map.
+
+    Attributes
+    ----------
+    region
+        Its name, a key of REGIONS.
+    faces
+        Its faces, each a Face.
+    claims
+        Of the proved cells, in their order, each a Claim.
+    sha256
+        The SHA-256 of the file, uncompressed.
+    """
 
     region: str
     faces: tuple
-    claims: tuple                       # of the proved cells, in their order
-    sha256: str                         # of the file, uncompressed
+    claims: tuple
+    sha256: str
 
     def count(self, kind):
+        """How many cells are of a kind.
+
+        Parameters
+        ----------
+        kind
+            A letter of MAP_KINDS: "P" proved, "A" proved with all larger multiples, "O" open.
+        """
         return sum(cell[0] == kind for face in self.faces for cell in face.cells)
 
 

@@ -35,19 +35,41 @@ class Result:
     """What came of a check in which nothing failed: true only if the whole claim is verified and
     its region is the whole torus, or all that a map or a portrait says is proved.  (All else is an
     exception.)
+
+    Attributes
+    ----------
+    status
+        VERIFIED, PART or SPOT_CHECK: the exit status of the command.
+    verdict
+        "verified", "verified in part" or "spot check".
+    text
+        The report.
+    facts
+        Of a certificate of existence, for each piece a Verified; else ().
     """
 
-    status: int                         # VERIFIED, PART or SPOT_CHECK: the exit status, too
-    verdict: str                        # "verified", "verified in part" or "spot check"
-    text: str                           # the report
-    facts: tuple = ()                   # of a certificate of existence: of each piece a Verified
+    status: int
+    verdict: str
+    text: str
+    facts: tuple = ()
 
     def __bool__(self):
         return self.status == VERIFIED
 
 
 def load(path):
-    """The bytes of a proof file, a map, a portrait or a certificate of existence, uncompressed."""
+    """The bytes of a proof file, a map, a portrait or a certificate of existence, uncompressed.
+
+    Parameters
+    ----------
+    path
+        The file, compressed by gzip or not.
+
+    Raises
+    ------
+    Unusable, NotConfirmed
+        The file cannot be read or is of another kind; or it exceeds the checker's limit.
+    """
     try:
         with open(path, "rb") as file:
             packed = file.peek(2)[:2] == b"\x1f\x8b"
@@ -67,8 +89,23 @@ def load(path):
 
 
 def read(path):
-    """Reads a proof file, a map, a portrait or a certificate of existence; of its
-    contents only the claim is believed."""
+    """Reads a proof file, a map, a portrait or a certificate of existence.  Nothing is verified.
+
+    Parameters
+    ----------
+    path
+        As of load().
+
+    Returns
+    -------
+    Claim, ParameterMap, Portrait or TorusClaim
+        The content of the file, exact.
+
+    Raises
+    ------
+    Rejected, NotConfirmed, Unusable
+        The file is wrong, exceeds the checker's limits, or cannot be used.
+    """
     data = load(path)
     if data.startswith(TORUS_MAGIC):
         return read_torus(data)
@@ -78,15 +115,38 @@ def read(path):
 
 
 def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=None):
-    """Verifies a proof file, a map, a portrait or a certificate of existence: a Result; else
-    Rejected, NotConfirmed or Unusable is raised.
+    """Verifies a proof file, a map, a portrait or a certificate of existence.
 
-    jobs: processes.  sample: check only this number of leaves, chosen by chance: a spot check.
-    state: a file that remembers which leaves are confirmed, so that an interrupted check can go on;
-    it is kept in the end.  (A certificate of existence is verified whole: its pieces by jobs
-    processes.)  bar: show the progress on stderr.  exact: in integers alone, as without numpy.
-    shard: (i, n): check only the leaves i, i + n, i + 2n, ..., and keep the result in the file
-    STATE.i-of-n; ("all", n): check no leaf, and put the n results together.
+    Parameters
+    ----------
+    path
+        As of load().
+    jobs
+        The number of processes.
+    sample
+        Check only this number of leaves, chosen by chance: a spot check.  None: check all.
+    state
+        A file that remembers which leaves are confirmed, so that an interrupted check can go on; it
+        is kept in the end.  A certificate of existence takes neither a sample nor a state.
+    bar
+        Whether to show the progress on stderr.
+    exact
+        Whether to use integers alone, as without numpy.
+    shard
+        (i, n): check only the leaves i, i + n, i + 2n, ..., and keep the result in the file
+        STATE.i-of-n.  ("all", n): check no leaf, and put the n results together.
+
+    Returns
+    -------
+    Result
+        True if the whole claim is verified.
+
+    Raises
+    ------
+    ValueError
+        jobs or sample is below 1.
+    Rejected, NotConfirmed, Unusable
+        The theorem is not verified; the text says why.
     """
     if jobs < 1 or sample is not None and sample < 1:
         raise ValueError("jobs and sample are 1 or more")

@@ -581,17 +581,35 @@ class Residual:
 
 @dataclass(frozen=True)
 class Verified:
-    """The facts of which the report of a piece is made."""
+    """The facts of which the report of a piece is made.
 
-    residual: Fraction                  # ||E(u)|| is at most this.
-    needed: Fraction                    # The theorem admits this.
-    distance: Fraction                  # The torus is within this of the file's, at real angles.
-    rho: Fraction                       # The width of the strip, for |k| with integer weights.
+    Attributes
+    ----------
+    residual
+        The norm of E(u) is at most this.
+    needed
+        The theorem admits this norm.
+    distance
+        The torus is within this distance of the file's, at real angles.
+    rho
+        The width of the strip, for |k| with integer weights.
+    constants
+        The Constants of the theorem.
+    modes, bits
+        The series of the residual have so many modes, of so many bits.
+    gamma, basis
+        |1 - e^(i k.w)| >= gamma |k|^-n for all k != 0 that are integer combinations of the basis.
+    """
+
+    residual: Fraction
+    needed: Fraction
+    distance: Fraction
+    rho: Fraction
     constants: Constants
-    modes: int                          # The series of the residual have these modes
-    bits: int                           # and these bits.
-    gamma: Fraction                     # |1 - e^(i k.w)| >= gamma |k|^-n for k != 0.
-    basis: tuple                        # These k are its integer combinations.
+    modes: int
+    bits: int
+    gamma: Fraction
+    basis: tuple
 
 
 class Setting:
@@ -736,9 +754,26 @@ def shift_of_cut(found, powers):
 
 
 def verify_torus(claim, tell=lambda text: None, jobs=1):
-    """(the report in lines, of each piece what was Verified); else a Failure is raised.
+    """Verifies the claim of a certificate of existence.
 
-    tell is told what is being done.  jobs pieces are verified at a time, in processes.
+    Parameters
+    ----------
+    claim
+        A TorusClaim.
+    tell
+        tell(text) is called with each step of the work.
+    jobs
+        How many pieces are verified at a time, in processes.
+
+    Returns
+    -------
+    lines, facts
+        The report in lines, and for each piece a Verified.
+
+    Raises
+    ------
+    Rejected, NotConfirmed, Unusable
+        The theorem is not verified; the text says why.
     """
     setting, numbers = Setting(claim), range(len(claim.pieces))
     if min(jobs, len(numbers)) == 1:

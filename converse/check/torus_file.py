@@ -38,27 +38,61 @@ class Piece:
 
 @dataclass(frozen=True)
 class TorusClaim:
-    """The claim of a certificate of existence, and the norms in which it is to be verified."""
+    """The claim of a certificate of existence, and the norms in which it is to be verified.
+
+    Attributes
+    ----------
+    dimension
+        The number of angles.
+    waves
+        The waves of the potential, affine in at most one parameter, and not 0.
+    polynomial, root
+        The coefficients, and (low, high), which isolates the root t.
+    rotation
+        Of each component the coordinates in 1, t, t^2.
+    frame, alpha
+        The rows and the weights of |k|.
+    rho
+        Of each piece the width of the strip.
+    pieces
+        The tori, each a Piece.
+    hints
+        Lines of the header by name, on which nothing rests.
+    sha256
+        The SHA-256 of the file, uncompressed.
+    """
 
     dimension: int
-    waves: tuple                        # They are affine in at most one parameter, and not 0.
+    waves: tuple
     polynomial: tuple
-    root: tuple                         # (low, high)
-    rotation: tuple                     # Each component is its coordinates in 1, t, t^2.
-    frame: tuple                        # It is the tuple of its rows.
+    root: tuple
+    rotation: tuple
+    frame: tuple
     alpha: tuple
-    rho: tuple                          # Each piece has a width of the strip.
+    rho: tuple
     pieces: tuple
-    hints: dict                         # Lines of the header by name, which nothing rests on.
-    sha256: str                         # It is of the file, uncompressed.
+    hints: dict
+    sha256: str
 
     @property
     def has_parameter(self):
+        """Does a wave depend on a parameter?"""
         return any(map(any, [wave.parts for wave in self.waves]))
 
 
 def read_torus(data):
-    """The claim of a certificate, if it is whole and has the checksum that it says."""
+    """The claim of a certificate, if it is whole and has the checksum that it says.
+
+    Parameters
+    ----------
+    data
+        The bytes of the file, uncompressed.
+
+    Raises
+    ------
+    Rejected, NotConfirmed, Unusable
+        As of read().
+    """
     head, body, sha256 = sealed(data, TORUS_MAGIC + b"1", "certificate", b"tori:\n", "are no tori")
     return parse_torus(torus_header(head), lines_of(body), bytes(head).count(b"\n") + 2, sha256)
 
