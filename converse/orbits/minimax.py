@@ -100,6 +100,11 @@ class Pair:
         progress : callable, optional
             As of orbits.prove.
 
+        Returns
+        -------
+        ProvedPair
+            Its attributes include `minimum`, a ProvedOrbit, and enclosures `barrier` and `residue`.
+
         Raises
         ------
         NotProved

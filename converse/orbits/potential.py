@@ -152,7 +152,23 @@ class Potential(Dynamics):
         return _studied, (self.name,)
 
     def evaluate(self, x: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """V, its gradient and its Hessian at x (m, n): arrays (m,), (m, n) and (m, n, n)."""
+        """V, its gradient and its Hessian.
+
+        Parameters
+        ----------
+        x : array of float, shape (m, n)
+            Points, in turns.
+
+        Returns
+        -------
+        value, gradient, hessian
+            Arrays (m,), (m, n) and (m, n, n) of V and its derivatives by x.
+
+        Raises
+        ------
+        ValueError
+            The array has another shape.
+        """
         x = points(x, self.n)
         value, gradient, bend = np.empty(len(x)), np.empty((len(x), 2)), np.empty((len(x), 3))
         lib.cv_evaluate(self.native, len(x), address(x), address(value, "double *"),

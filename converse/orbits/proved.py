@@ -55,6 +55,8 @@ class ProvedOrbit:
         undecided.
     moved : float
         The distance of the points from the state's: the largest coordinate, on the torus, in turns.
+    displacements : tuple of tuple of Fraction, shape (q, n)
+        The centre of the ball of this radius, as displacements from the straight orbit.
     """
 
     state: PeriodicOrbit
@@ -104,7 +106,7 @@ class ProvedOrbit:
 
     @property
     def residue(self) -> Interval:
-        """An enclosure of Greene's residue (2 - rho)/4, which is negative; ValueError for n = 2."""
+        """An enclosure of Greene's residue (2 - rho)/4, which is negative.  ValueError: n is 2."""
         if self.state.potential.n != 1 or self.indices is None:
             raise ValueError("Greene's residue is of maps with one angle; with two there are the "
                              "stability indices, .indices")

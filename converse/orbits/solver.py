@@ -69,6 +69,7 @@ class Family:
 
     @property
     def eps(self) -> np.ndarray:
+        """Array (len,)."""
         return np.array([state.eps for state in self.states])
 
     @property

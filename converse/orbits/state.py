@@ -273,6 +273,7 @@ class PeriodicOrbit:
         Parameters
         ----------
         shift : float
+            The number.
         """
         shift, = finite("shift", [shift])
         return done(lib.cv_solve(self.potential.n, self.q, address(self.blocks, "double(*)[3]"),
@@ -284,7 +285,9 @@ class PeriodicOrbit:
         Parameters
         ----------
         b : array of float, shape (q, n)
+            The right side.
         shift : float
+            The number that is added to the diagonal.
 
         Returns
         -------
@@ -416,6 +419,12 @@ class PeriodicOrbit:
         ----------
         count : int
             How many at most.
+
+        Returns
+        -------
+        Pairs
+            Arrays i, j, distance and momentum, closest first: the indices of two points, and the
+            distances of their angles and of their momenta.
         """
         count = min(whole("count", count, 0), self.q * (self.q - 1) // 2)
         i, j, distance = closest_pairs(self.turns, count)
@@ -430,6 +439,11 @@ class PeriodicOrbit:
         ----------
         count : int, optional
             How many of the widest; by default all q.
+
+        Returns
+        -------
+        Gaps
+            Arrays i, j, width and x: a gap begins at point i, whose angle is x, and ends at j.
 
         Raises
         ------
@@ -517,7 +531,7 @@ class PeriodicOrbit:
         Parameters
         ----------
         path, potential
-            As of Family.load.
+            As of Family.load, with the same errors.
         """
         from .points import load
         return load(path, potential)[0]
@@ -540,6 +554,7 @@ class PeriodicOrbit:
         Parameters
         ----------
         n : int
+            How often; n q is at most MAX_Q.
         """
         n = whole("how often an orbit is run through", n, 1, MAX_Q // self.q)
         return replace(self, p=tuple(n * i for i in self.p), q=n * self.q,
@@ -556,6 +571,7 @@ class PeriodicOrbit:
         tol : float
             The largest coordinate of its gradient, in turns; 100 tol where rounding prevents less.
         max_steps : int
+            The most steps of Newton's method.
 
         Raises
         ------

@@ -40,7 +40,15 @@ Type = Tuple[Tuple[int, ...], int]
 
 
 class Onset(NamedTuple):
-    """The states on both sides of an onset; above is None where no onset was found."""
+    """The states on both sides of an onset.
+
+    Attributes
+    ----------
+    below : PeriodicOrbit
+        The last state below the onset.
+    above : PeriodicOrbit or None
+        The first state above the onset; None if none was found.
+    """
 
     below: PeriodicOrbit
     above: Optional[PeriodicOrbit]
@@ -77,6 +85,8 @@ def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = 
 
     Raises
     ------
+    ValueError
+        The numbers are not as described, or the exponent is too small for doubles to show.
     ConverseError
         Continuation loses the branch.
 

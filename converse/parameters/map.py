@@ -22,10 +22,22 @@ class Node:
     """A cell of the tree: a leaf of some kind, or cut across an axis into two halves.  It is one or
     the other whenever an exception strikes.
 
-    kind: PROVED; AT_ONCE, proved with all larger multiples by Mather's criterion; OPEN.
-    proof: of a proved leaf, the tree of its prisms with x*, frame, coordinate and region, as plain
-    data.
-    tried: of an open leaf, the largest number of leaves with which a proof was tried in vain."""
+    Attributes
+    ----------
+    cell
+        The cell.
+    kind
+        "P", proved; "A", proved with all larger multiples by Mather's criterion; "O", open.
+    axis
+        The axis across which the cell is cut: 0, r; 1, s; None: the node is a leaf.
+    halves
+        The nodes of both halves; () for a leaf.
+    proof
+        Of a proved leaf, the tree of its prisms with x*, frame, coordinate and region, as plain
+        data; else None.
+    tried
+        Of an open leaf, the largest number of leaves with which a proof was tried in vain.
+    """
 
     __slots__ = ("cell", "kind", "axis", "halves", "proof", "tried")
 
@@ -37,11 +49,25 @@ class Node:
         self.tried = 0
 
     def cut(self, axis: int) -> "Tuple[Node, ...]":
+        """Cuts the cell of a leaf, and returns both halves.
+
+        Parameters
+        ----------
+        axis
+            0: r is cut; 1: s is cut.
+        """
         self.axis = axis
         self.halves = tuple(map(Node, self.cell.halves(axis)))
         return self.halves
 
     def decide(self, kind: str, proof: Optional[Dict[str, Any]]) -> None:
+        """Makes the node a leaf of another kind.
+
+        Parameters
+        ----------
+        kind, proof
+            New values of these attributes.
+        """
         self.proof = proof
         self.kind = kind
 
@@ -87,6 +113,13 @@ class ParameterMap(Kept):
 
     @classmethod
     def new(cls, region: str, down_to: Fraction) -> "ParameterMap":
+        """A map of which nothing is proved or estimated yet.
+
+        Parameters
+        ----------
+        region, down_to
+            Values of these attributes.
+        """
         faces = REGIONS[region]
         return cls(region, down_to, [Node(root(face)) for face in range(len(faces))],
                    [{} for _ in faces])
@@ -97,11 +130,18 @@ class ParameterMap(Kept):
         return REGIONS[self.region]
 
     def leaves(self) -> Iterator[Node]:
+        """The leaves of all faces, in preorder."""
         for tree in self.roots:
             yield from (node for node in tree.nodes() if not node.halves)
 
     def count(self, kind: str) -> int:
-        """How many leaves are of a kind."""
+        """How many leaves are of a kind.
+
+        Parameters
+        ----------
+        kind
+            As of Node.
+        """
         return sum(leaf.kind == kind for leaf in self.leaves())
 
     # ---- the estimate
@@ -112,7 +152,18 @@ class ParameterMap(Kept):
         return [Fraction(k, ESTIMATE_GRID) for k in range(ESTIMATE_GRID + 1)]
 
     def estimated(self, face: int, s: Fraction) -> float:
-        """The estimated frontier in a direction, linear between known places."""
+        """The estimated frontier in a direction: a radius, linear between known places.
+
+        Parameters
+        ----------
+        face, s
+            The number of the face, and the direction on it, from 0 to 1.
+
+        Raises
+        ------
+        KeyError
+            The frontier is not yet estimated at a neighbouring place.
+        """
         k = min(math.floor(s * ESTIMATE_GRID), ESTIMATE_GRID - 1)
         share, known = float(s * ESTIMATE_GRID - k), self.estimate[face]
         return sum(weight * known[Fraction(place, ESTIMATE_GRID)]
@@ -120,7 +171,13 @@ class ParameterMap(Kept):
 
     def target(self, cell: Cell) -> float:
         """The least radius down to which all directions of a cell are to be proved: down_to times
-        the least estimate."""
+        the least estimate.
+
+        Parameters
+        ----------
+        cell
+            The cell.  Its directions must have estimates.
+        """
         low, high = cell.low[1], cell.high[1]
         inner = range(math.floor(low * ESTIMATE_GRID) + 1, math.ceil(high * ESTIMATE_GRID))
         return float(self.down_to) * min(
@@ -128,8 +185,13 @@ class ParameterMap(Kept):
             for s in [low, *(Fraction(k, ESTIMATE_GRID) for k in inner), high])
 
     def area(self, cell: Optional[Cell] = None) -> float:
-        """About the area, in (r, s), of the part of a cell that is to be proved; without a cell, of
-        all that is to be proved."""
+        """About the area, in (r, s), of what is to be proved.
+
+        Parameters
+        ----------
+        cell
+            The cell whose part is measured; None: all that is to be proved.
+        """
         if cell is None:
             return sum(max(0.0, RADIUS - float(self.down_to) * radius) / len(estimate)
                        for estimate in self.estimate for radius in estimate.values())
@@ -140,7 +202,13 @@ class ParameterMap(Kept):
     # ---- what is proved
 
     def wanted(self, cell: Cell) -> bool:
-        """Does a part of the cell lie above down_to times the estimate?"""
+        """Does a part of the cell lie above down_to times the estimate?
+
+        Parameters
+        ----------
+        cell
+            As of target().
+        """
         return float(cell.high[0]) > self.target(cell)
 
     @property
@@ -162,7 +230,13 @@ class ParameterMap(Kept):
                    for leaf in self.leaves() if leaf.kind == OPEN)
 
     def height(self, face: int) -> Fraction:
-        """The radius above which all directions of a face are proved."""
+        """The radius above which all directions of a face are proved.
+
+        Parameters
+        ----------
+        face
+            The number of the face.
+        """
         return max(leaf.cell.high[0] for leaf in self.leaves()
                    if leaf.kind == OPEN and leaf.cell.face == face)
 

@@ -21,7 +21,15 @@ REGIONS = {                             # by name, d_0 and d_1 of each face
 
 @dataclass(frozen=True)
 class Cell:
-    """low and high: the ends of r and s, of face number `face` of the region."""
+    """A rectangle of (r, s).
+
+    Attributes
+    ----------
+    face
+        The number of the face in its region, from 0.
+    low, high
+        The lower and the upper ends of r and s.
+    """
 
     face: int
     low: Tuple[Fraction, ...]
@@ -29,10 +37,17 @@ class Cell:
 
     @property
     def middle(self) -> Tuple[Fraction, ...]:
+        """r and s in the middle."""
         return tuple((low + high) / 2 for low, high in zip(self.low, self.high))
 
     def halves(self, axis: int) -> "Tuple[Cell, Cell]":
-        """The lower and the upper half across an axis."""
+        """The lower and the upper half across an axis.
+
+        Parameters
+        ----------
+        axis
+            0: r is cut; 1: s is cut.
+        """
         middle = self.middle[axis]
         return (Cell(self.face, self.low, self.high[:axis] + (middle,) + self.high[axis + 1:]),
                 Cell(self.face, self.low[:axis] + (middle,) + self.low[axis + 1:], self.high))

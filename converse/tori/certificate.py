@@ -23,8 +23,12 @@ Path = Union[str, "os.PathLike[str]"]
 class Certificate(NamedTuple):
     """The contents of a file.  They prove nothing until the file is checked.
 
-    tori -- the pieces, of one map and one rotation vector
-    sha256 -- of the file, uncompressed
+    Attributes
+    ----------
+    tori
+        The pieces, of one map and one rotation vector.
+    sha256
+        The SHA-256 of the file, uncompressed.
     """
 
     tori: Tuple[Torus, ...]

@@ -36,9 +36,14 @@ TOO_LARGE = "too large"
 class NotFound(Exception):
     """No torus was found; the text says why, and what was reached.
 
-    reached -- The last torus is at this part of the way to the amplitudes, in [0, 1].  The way
-        through a range begins at its lower end.
-    amplitude -- there, of each wave."""
+    Attributes
+    ----------
+    reached
+        The last torus is at this part of the way to the amplitudes, in [0, 1].  The way through a
+        range begins at its lower end.
+    amplitude
+        The amplitude of each wave there.
+    """
 
     def __init__(self, text: str, reached: float, amplitude: Sequence[float]) -> None:
         super().__init__(text)

@@ -28,8 +28,13 @@ Progress = Optional[Callable[[str], None]]
 class NotProved(ConverseError):
     """The checker did not confirm the certificate of the torus; the text says why.
 
-    residual, needed -- the norm of E(u) that was reached, and the largest for which the theorem
-    would hold; infinity and 0 if they are not known."""
+    Attributes
+    ----------
+    residual
+        The norm of E(u) that was reached; infinity if it is not known.
+    needed
+        The largest norm for which the theorem would hold; 0 if it is not known.
+    """
 
     def __init__(self, text: str, residual: float = math.inf, needed: float = 0.0) -> None:
         super().__init__(text)
@@ -64,8 +69,17 @@ class ProvedTorus:
     nothing varies) the map has a real analytic invariant graph, conjugate to the rotation.  Each
     graph is within its piece's distance of the piece's torus.
 
-    certificate -- the text that was verified
-    seconds -- of processor time, that the checker took"""
+    Attributes
+    ----------
+    pieces
+        The facts that the checker verified of each piece of the range, in its order.  Their
+        attributes include `torus`, `residual`, `needed`, `distance` and the width `rho` of the
+        strip.
+    certificate
+        The text that was verified.
+    seconds
+        The processor time that the checker took.
+    """
 
     pieces: Tuple[Piece, ...]
     certificate: str
@@ -81,6 +95,7 @@ class ProvedTorus:
 
     @property
     def rotation(self) -> Rotation:
+        """The rotation vector of all pieces."""
         return self.torus.rotation
 
     @property
@@ -90,15 +105,17 @@ class ProvedTorus:
 
     @property
     def residual(self) -> float:
+        """A bound of the norm of E(u), of the worst piece."""
         return float(self.worst.residual)
 
     @property
     def needed(self) -> float:
+        """The largest norm that the theorem would admit, of the worst piece."""
         return float(self.worst.needed)
 
     @property
     def distance(self) -> float:
-        """Of the farthest piece."""
+        """Each invariant torus is within this distance of its piece's torus, at real angles."""
         return float(max(piece.distance for piece in self.pieces))
 
     def report(self) -> str:

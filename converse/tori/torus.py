@@ -62,8 +62,12 @@ def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
 class Strip(NamedTuple):
     """In what norm the theorem is to be verified: a choice of the proof, no part of the claim.
 
-    frame, alpha -- |k| = sum of alpha[i] |frame[i].k|: n rows of n integers, n positive numbers.
-    rho -- the width of the strip: ||f||_rho is the sum of |f_k| e^{rho |k|}.
+    Attributes
+    ----------
+    frame, alpha
+        n rows of n integers, and n positive numbers: |k| = sum of alpha[i] |frame[i].k|.
+    rho
+        The width of the strip: the norm of f is the sum of |f_k| e^{rho |k|}.
     """
 
     frame: Tuple[Tuple[int, ...], ...]
@@ -73,16 +77,30 @@ class Strip(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Torus:
-    """potential -- of dimension n, with the amplitudes at s = 0.
-    part -- what s adds to them at s = 1, or None.
-    rotation -- omega.
-    bits -- Coefficients are integers times 2^-bits.
-    k -- the modes, integers of shape (modes, n) in lexicographic order: of k and -k the one that is
+    """A torus x(theta) = theta + u(theta) of a map, u a finite Fourier sum without a mean.  It need
+    not be invariant: prove() shows that an invariant torus is near.
+
+    Parameters
+    ----------
+    potential
+        The potential, of n angles, with the amplitudes at s = 0.
+    part
+        What the parameter s adds to each amplitude at s = 1; None: there is no parameter.
+    rotation
+        The rotation vector omega, in turns.
+    bits
+        Coefficients are integers times 2^-bits.
+    k
+        The modes, integers of shape (modes, n) in lexicographic order: of k and -k the one that is
         lexicographically positive.
-    numbers -- Python integers of shape (2, degree + 1, n, modes): the real and imaginary parts of
-        the coefficient of sigma^j in each component of u_k, times 2^bits.
-    strip -- in which there is a proof, presumably; None if nothing is known of one.
-    piece -- (low, high), the s that are covered; (0, 0) without a parameter.
+    numbers
+        Python integers of shape (2, degree + 1, n, modes): the real and imaginary parts of the
+        coefficient of sigma^j in each component of u_k, times 2^bits.
+    strip
+        The strip in which there is a proof, presumably; None if nothing is known of one.
+    piece
+        (low, high), the s that are covered; (0, 0) without a parameter.  On the piece sigma is
+        (2 s - low - high)/(high - low).
     """
 
     potential: FourierSum
