@@ -469,7 +469,8 @@ def at_once(model):
             n[:] = exact("n0"), exact("n1")
 
         names = {**model.names, "square": lambda x: x * x, "least_eigenvector": eigenvector,
-                 "SLOTS": model.slots, "w": given, "at": [0.0] * 2, "at_end": at_end}
+                 "SLOTS": model.slots, "w": given, "at": [0.0] * 2, "at_end": at_end,
+                 "size_of": function(text, "size_of").bound(model.names)}
         *rest, last = function(text, "loewner_at_once").statements
         run(rest, names, noted)
         length = symbol("n0") * symbol("n0") + symbol("n1") * symbol("n1")

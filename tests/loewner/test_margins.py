@@ -84,8 +84,8 @@ MUTATIONS = [                           # file, what stands there, what to put i
      "multipliers"),
     ("loewner/problem.c", "sum + 0x1p-45 *", "sum + 0x1p-48 *", "general at_once"),
     ("loewner/problem.c", "(1.0 + err_angle) * mass < 0.0", "mass < 0.0", "general at_once"),
-    ("loewner/problem.c", "mass += size * w->square_k[i] * length;", "mass += size;",
-     "general at_once"),
+    ("loewner/problem.c", "w->err_amplitude[i]) * w->square_k[i] * length;",
+     "w->err_amplitude[i]);", "general at_once"),
 ]
 
 
