@@ -5,7 +5,8 @@
     print(family[-1].label, family[-1].exponents)
 
 The states of a SymplecticMap have its units, angles of period 2 pi.  The potentials with names have
-states with angles of period 1, as in the thesis.
+states with angles of period 1, as in the thesis.  All functions and methods raise ValueError if a
+map, a type or a number is not as described.
 """
 
 try:

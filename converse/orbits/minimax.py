@@ -84,7 +84,7 @@ class Pair:
         return self.barrier
 
     def check_flux(self) -> None:
-        """ValueError, unless there is one angle."""
+        """Raises ValueError unless there is one angle."""
         if self.minimum.potential.n != 1:
             raise ValueError("the flux is of maps with one angle; with two there is the difference "
                              "of action, .barrier")

@@ -86,7 +86,7 @@ def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = 
     Raises
     ------
     ValueError
-        The numbers are not as described, or the exponent is too small for doubles to show.
+        The exponent is too small for doubles to show.
     ConverseError
         Continuation loses the branch.
 

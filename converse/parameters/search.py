@@ -193,7 +193,7 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         An argument is wrong.
     ConverseError, MemoryError
         The run ended; the cells that are proved are in the file.

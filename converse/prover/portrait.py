@@ -343,8 +343,8 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
 
     Raises
     ------
-    ValueError
-        The numbers or the map do not suit.
+    TypeError, ValueError
+        An argument does not suit, or there is neither a map nor a file to continue.
     ConverseError
         The file cannot be used; what was found is in it.
     """

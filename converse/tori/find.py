@@ -64,7 +64,7 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], 
     ------
     NotFound
         There is none, as far as can be seen, or it needs more points.
-    ValueError
+    TypeError, ValueError
         Map, rotation vector and start do not go together, or the margin is not from 1 to 1e100.
     """
     if not 1 <= margin <= MOST_MARGIN:
