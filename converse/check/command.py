@@ -113,7 +113,7 @@ def main(argv=None):
     Parameters
     ----------
     argv
-        The arguments; None: those of the process, whose signals are then handled.
+        The arguments; None: the arguments of the process, whose signals are then handled.
     """
     options = argparse.Namespace(file="", state=None)
     with interruptible(argv is None):

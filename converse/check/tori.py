@@ -596,7 +596,7 @@ class Verified:
     constants
         The Constants of the theorem.
     modes, bits
-        The series of the residual have so many modes, of so many bits.
+        The number of modes in the series of the residual, and the bits of their coefficients.
     gamma, basis
         |1 - e^(i k.w)| >= gamma |k|^-n for all k != 0 that are integer combinations of the basis.
     """
