@@ -22,7 +22,7 @@ from sums import fourier
 
 from converse import ConverseError, orbits
 from converse.model.balls import precision
-from converse.orbits import enclosure, potential
+from converse.orbits import enclosure, potential, proved
 from converse.orbits.enclosure import Enclosure
 from converse.orbits.exponents import growth
 from converse.orbits.proved import NotProved, prove
@@ -718,6 +718,28 @@ def test_few_places_least(few):
         for above in (2e-14, 1.5e-10, 1e-9, 1e-8, 1e-6, 1e-3, 1.0):
             assert not exact.least(Fraction(least + above))
         assert exact.least(Fraction(least * 0.98 - 1e-6))
+
+
+def test_the_least_eigenvalue_is_that_of_all_of_the_ball(monkeypatch):
+    """Where the points are rough: it may be less by |eps| lipschitz radius than at the centre."""
+    state, seen = found("standard", (1,), 3, 0.3), []
+
+    def rough(state, exact, places, floor):
+        exact.evaluate(places)
+        exact.move([arb_mat(1, 1, ["1e-7"])] * state.q)
+        exact.evaluate(places)
+
+    def least(*arguments, real=proved._least):
+        seen.append(real(*arguments))
+        return seen[-1]
+
+    monkeypatch.setattr(proved, "_refine", rough)
+    monkeypatch.setattr(proved, "_least", least)
+    with precision():
+        orbit = proved._attempt(state, enclosed(state), growth, 30, 3)
+    bend = Fraction("0.3") * Fraction(state.potential.lipschitz)
+    assert orbit.radius > Fraction(1, 10**8)
+    assert seen[0] / 2 < orbit.least <= seen[0] - bend * orbit.radius
 
 
 def pivots(beta):

@@ -3,10 +3,12 @@
 import re
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import mpmath
 import numpy as np
 import pytest
+from flint import arb_mat
 from test_minimax import golden, least, truth
 
 from converse import orbits
@@ -112,6 +114,44 @@ def test_a_minimum_or_nothing_in_the_place_of_the_pass():
     away = pair.minimax.moved(pair.minimax.u + 1e-5)
     with pytest.raises(NotProved, match="not stationary"):
         Pair(pair.minimum, away, pair.step, pair.turn).prove()
+
+
+def test_between_counts_both_balls():
+    """A point is between its neighbours only if its ball is outside of both of theirs."""
+    pair = golden(5, 1.2).minimax()
+    proved = pair.prove()
+    q, own, radius = pair.minimum.q, proved.minimum.displacements, Fraction(1, 1000)
+    step, away = Fraction(pair.step[0], q), radius + proved.minimum.radius
+    shift = Fraction(pair.minimax.origin[0]) - Fraction(pair.minimum.origin[0])
+    ends = [(own[j][0] - shift, own[(j + pair.turn) % q][0] + step - shift) for j in range(q)]
+    held = object.__new__(_Pass)
+    held.pair, held.minimum, held.exact = pair, proved.minimum, SimpleNamespace(q=q)
+    middle = [((low + high) / 2,) for low, high in ends]
+    assert held.between(middle, radius)
+    for j, (low, high) in enumerate(ends):
+        for place, inward in ((low + away, 1), (high - away, -1)):
+            for inside in (True, False):
+                points = [*middle]
+                points[j] = place + inward * radius / 100 * (1 if inside else -1),
+                assert held.between(points, radius) == inside
+
+
+def test_the_action_of_a_pass_counts_all_of_its_ball():
+    """Where the points are rough: the Hessian is at most 4 + |eps| curvature."""
+    class Rough(_Pass):
+        def refine(self):
+            self.evaluate()
+            self.exact.move([arb_mat(1, 1, ["1e-9"])] * self.exact.q)
+            self.evaluate()
+
+    pair = golden(5, 1.2).minimax()
+    with precision():
+        found = Rough(pair, pair.prove().minimum, Enclosure(pair.minimax, Fraction("1.2")), 5,
+                      30).proved()
+    state = pair.minimax
+    most = (4 + Fraction("1.2") * Fraction(state.potential.curvature)) * found.radius ** 2 / 2
+    assert found.radius > Fraction(1, 10 ** 9)
+    assert found.action[1] - found.action[0] >= 2 * most / state.q
 
 
 def test_bad_digits():
