@@ -1997,8 +1997,19 @@ def test_roundings_of_each_step_are_counted(np, texts, c, factor):
     assert (rests[0] - rests[1] > 0.95 * factor * push * 100 ** 2 / 2).all()
 
 
-def test_lockstep_orbits(np, generator, monkeypatch):
+def cut_short(monkeypatch, bits):
+    """Centres are whole numbers of 2^-bits turns, cut downwards, so that all errors have one sign
+    and nothing else hides them; and WHOLE_ERROR is what it is for 64 bits."""
+    if bits < 64:
+        whole, lost = check.whole, 64 - bits
+        monkeypatch.setattr(check, "whole", lambda turns: whole(turns) >> lost << lost)
+        monkeypatch.setattr(check, "WHOLE_ERROR", 2.0 ** (3 - bits))
+
+
+@pytest.mark.parametrize("bits", [64, 36])
+def test_lockstep_orbits(np, generator, monkeypatch, bits):
     """True orbits of a prism are where the models say, within their rests, rounded as they are."""
+    cut_short(monkeypatch, bits)
     cases = tight = others = 0
     step, centres, bows = check.Prisms.step, [], []     # bows: k.T of each site
 
@@ -2008,7 +2019,7 @@ def test_lockstep_orbits(np, generator, monkeypatch):
         step(self)
 
     monkeypatch.setattr(check.Prisms, "step", records)
-    for _ in range(16 * TORTURE):
+    for _ in range((16 if bits == 64 else 8) * TORTURE):
         prisms = random_prisms(np, generator)
         known = [(k, Fraction(phase)) for k, phase in prisms.shape.known]
         centres.clear()
@@ -2041,7 +2052,7 @@ def test_lockstep_orbits(np, generator, monkeypatch):
                             cases += 1
                             tight += abs(off) > left / 20
                             others += w > 2
-    assert cases > 1000 * TORTURE and tight > 20 and others > 100
+    assert cases > 500 * TORTURE and tight > 20 and others > 50
 
 
 def some(generator):
@@ -2225,6 +2236,35 @@ def test_lockstep_bound(np, generator, chosen):
                 least = min(least, bound[lane] - true if true else 1)
                 cases += 1
     assert cases > 36 * TORTURE and 0 < least < (1e-6 if chosen == "at random" else 1)
+
+
+def test_sums_in_blocks(np, generator, monkeypatch):
+    """Blocks of one site, of three or of all lead to the same sums.  So do their errors; N blocks
+    of one site have as many terms one after the other as one block of N, and blocks of three fewer.
+    """
+    monkeypatch.setattr(check, "MAX_SITES", 40)
+    cases = 0
+    for _ in range(8):
+        prisms, found = random_prisms(np, generator, scale=0.3), []
+        with np.errstate(all="ignore"):
+            assert all(prisms.follow())
+            N, lanes = len(prisms.sites), prisms.l.size
+            draw = np.random.default_rng(generator.getrandbits(64))
+            vectors = [draw.uniform(-1, 1, (2, lanes)) * site.alive for site in prisms.sites], \
+                [draw.integers(0, 3, lanes) for _ in prisms.sites]
+            prisms.test_vectors = lambda: vectors
+            for sites in (1, 3, N):
+                monkeypatch.setattr(check, "BLOCK", sites * lanes)
+                value, form, error = prisms.expand()
+                found.append((np.stack([value, *form.values()]), error))
+        (ones, _), (threes, less), (whole, error) = found
+        good = (error < 0.1) & (N > 6)
+        for other in ones, threes:
+            assert (abs(other - whole) <= error)[:, good].all()
+        assert found[0][1][good] == pytest.approx(error[good], rel=1e-13)
+        assert (less < error)[good].all() and less[good] == pytest.approx(error[good], rel=0.9)
+        cases += good.sum()
+    assert cases > 10
 
 
 def test_a_leaf_of_long_orbits(np, texts, generator, monkeypatch):
