@@ -432,8 +432,10 @@ static vec summit(const batch *w, int with_cubic)
    sums of its block, of n = min(N, BLOCK) sites; the blocks are N/BLOCK + 2 at most, and summit and
    the last sums make 45 additions.  So all is off by (22 n + N/64 + 72) u of the mass, where `each`
    is (32 n + N/32 + 128) u.  Positive sums are off by (22 n + N/64 + 32) u of themselves, which
-   `each` covers, too.  (2) leaves at most (10 + N') u (1 + S) of the weights, N' waves, and 2 u of
-   the neighbours' mu; `left` has 4 (14 + N')(1 + S) and 8. */
+   `each` covers, too.  In leave_exactly the sites ORIGIN and ORIGIN + 1 end no block; a block has
+   2 n sites at most, of 2 additions each, which are fewer than 22 n.  (2) leaves at most
+   (10 + N') u (1 + S) of the weights, N' waves, and 2 u of the neighbours' mu; `left` has
+   4 (14 + N')(1 + S) and 8. */
 static void bound_with(batch *w, mask active, int signs)
 {
     const int columns = w->problem->columns;
