@@ -7,6 +7,7 @@ import os
 import sys
 import time
 
+from ..model.exact import decimal_text
 from ..prover.report import header, verdict
 from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED, Settings
 from ..storage import files
@@ -43,6 +44,13 @@ class ListInputs(argparse.Action):
         parser.exit()
 
 
+def _decimal(text):
+    try:
+        return decimal_text(number(text))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
 def parser():
     p = Parser(prog="converse", epilog=ENDING, description=(
         "Tries to prove that %s, has no invariant torus, for all parameters of a range at a time."
@@ -74,7 +82,7 @@ def parser():
                    "precision")
     p.add_argument("--together", action="store_true",
                    help=TOGETHER + " (loewner)")
-    p.add_argument("--xstar", nargs=2, type=number, metavar=("X0", "X1"),
+    p.add_argument("--xstar", nargs=2, type=_decimal, metavar=("X0", "X1"),
                    help="the starting point x*, angles in radians (default: the program chooses)")
     add_worker_options(p, "parts")
     p.add_argument("--list-inputs", action=ListInputs, nargs=0,

@@ -133,7 +133,7 @@ def test_in_an_executor():
         there = list(executor.map(orbits.search, *zip(*arguments)))
     for state, here in zip(there, itertools.starmap(orbits.search, arguments)):
         assert (state.action, state.label) == (here.action, here.label)
-        assert state.potential is trig
+        assert state.potential == trig
 
 
 def test_the_label_counts_searches():
