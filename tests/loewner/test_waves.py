@@ -469,6 +469,17 @@ def test_convexity_bounds_it_between_the_corners():
         assert summit([(*w[:2], float(w[2]), float(q)) for w, q in zip(patch.waves, p)]) <= B
 
 
+@pytest.mark.parametrize("parameters, moved_by", [(1, 0), (2, 1), (3, 0), (3, 1), (3, 2)])
+def test_a_wave_that_one_parameter_alone_moves_is_there(parameters, moved_by):
+    """Its amplitude is 0 in the middle of the parameters, and the largest at an end."""
+    patch = draw(rng_for("waves moved"), [(1, 1), (1, -1)])
+    parts = [Fraction(m == moved_by, 2) for m in range(3)]
+    patch.waves = [(1, 0, *map(Fraction, (0, "0.1", 0, 0, 0))), (0, 1, Fraction(0), 0, *parts)]
+    patch.parameters = parameters
+    B, = kernels.call("waves_largest", arguments(patch), 1, 20)
+    assert Fraction(5, 2) <= B < Fraction(5, 2) + Fraction(1, 10 ** 5)
+
+
 # ---- whole searches
 
 def patch_of(waves, amplitude, parts=(), frame=(1, 0, 0, 1), odd=True, v0=(0, 2), v1=(0, 2),
