@@ -10,15 +10,29 @@ a table of the modules.
 from .command import main, parser
 from .failures import Failure, NotConfirmed, Rejected, Unusable, shown
 from .limits import INTERRUPTED, NOT_CONFIRMED, PART, REJECTED, SPOT_CHECK, UNUSABLE, VERIFIED
-from .maps import ParameterMap
 from .run import Result, load, read, verify
-from .tori import Verified, verify_torus
 from .torus_file import TorusClaim, read_torus
 from .tree import check_tree
 from .version import __version__
 from .words import decimal_text
 
+TYPE_CHECKING = False                   # as in typing
+if TYPE_CHECKING:
+    from .maps import ParameterMap
+    from .tori import Verified, verify_torus
+
 __all__ = ["Failure", "INTERRUPTED", "NOT_CONFIRMED", "NotConfirmed", "PART", "ParameterMap",
            "REJECTED", "Rejected", "Result", "SPOT_CHECK", "TorusClaim", "UNUSABLE", "Unusable",
            "VERIFIED", "Verified", "__version__", "check_tree", "decimal_text", "load", "main",
            "parser", "read", "read_torus", "shown", "verify", "verify_torus"]
+
+
+def __getattr__(name):
+    """Imports what only maps and certificates of existence need when it is asked for."""
+    if name == "ParameterMap":
+        from . import maps as home
+    elif name in ("Verified", "verify_torus"):
+        from . import tori as home
+    else:
+        raise AttributeError("module %r has no attribute %r" % (__name__, name))
+    return getattr(home, name)

@@ -7,18 +7,17 @@ import random
 import zlib
 from dataclasses import dataclass
 
+from .claim import Claim
 from .criterion import check_at_once
 from .failures import NotConfirmed, Unusable, reason
 from .limits import MAX_BYTES, PART, SPOT_CHECK, VERIFIED
 from .links import check_links
 from .lockstep import make_lockstep
-from .maps import ParameterMap, check_map, mapped, read_map
 from .portrait import FIRST_LINE as PORTRAIT
 from .portrait import Portrait, portrayed, read_portrait
 from .progress import Bar
 from .proof_file import MAGIC, read_proof
 from .state import state_of
-from .tori import verify_torus
 from .torus_file import TORUS_MAGIC, TorusClaim, read_torus
 from .tree import check_mirror_images, check_tree
 from .words import claimed, not_excluded, report
@@ -111,7 +110,10 @@ def read(path):
         return read_torus(data)
     if data.startswith(PORTRAIT_MAGIC):
         return read_portrait(data)
-    return read_map(data) if data.startswith(b"{") else read_proof(data)
+    if data.startswith(b"{"):
+        from .maps import read_map  # only here and below, as json would delay all other checks
+        return read_map(data)
+    return read_proof(data)
 
 
 def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=None):
@@ -159,10 +161,11 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
         if sample is not None or state is not None:
             raise Unusable("a certificate of existence is verified as a whole: no --sample, no "
                            "--state")
+        from .tori import verify_torus  # here, as its modules would delay all other checks
         with Bar((file,) if bar else (), 1) as progress:
             lines, facts = verify_torus(file, progress.tell, jobs)
         return Result(VERIFIED, "verified", "\n".join([*lines, "SHA-256 : " + file.sha256]), facts)
-    problems = problems_of(file)
+    problems, theorem_of = problems_of(file)
     total = sum([claim.counts["proved"] for claim in problems.claims])
     done = state_of(state, file.sha256, total, shard)
     earlier = done.confirmed
@@ -172,7 +175,6 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
     if chosen and not exact:
         problems.fast = make_lockstep(problems.claims)
     check_leaves(problems, chosen, done, jobs, bar)
-    theorem_of = {ParameterMap: mapped, Portrait: portrayed}.get(type(file), claimed)
     status, lines = report(problems.claims, theorem_of(file),
                            problems.criterion(0) if theorem_of is claimed else None,
                            done.confirmed, done.pieces, done.doubles)
@@ -194,18 +196,19 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
 
 
 def problems_of(file):
-    """The Problems of a proof file, a map or a portrait.  Everything except the leaves has been
-    checked."""
-    if isinstance(file, ParameterMap):
-        return Problems(file.claims, check_map(file))
+    """The Problems of a proof file, a map or a portrait, and the function that words its theorem.
+    Everything except the leaves has been checked."""
     if isinstance(file, Portrait):
-        return Problems(file.claims)
+        return Problems(file.claims), portrayed
+    if not isinstance(file, Claim):
+        from .maps import check_map, mapped
+        return Problems(file.claims, check_map(file)), mapped
     check_tree(file)
     check_mirror_images(file)
     problems = Problems((file, *file.parts))
     check_links(file, problems.criterion(0))
     check_at_once(problems.criterion(0))
-    return problems
+    return problems, claimed
 
 
 def check_leaves(problems, chosen, done, jobs, bar):

@@ -3,9 +3,7 @@
 import contextlib
 import functools
 import hashlib
-import importlib.util
 import os
-import pkgutil
 import re
 import stat
 import sys
@@ -29,6 +27,8 @@ in doubles: %d
 def own_digest():
     """The SHA-256 of the sources of this very checker: of all modules of its package, in a folder
     or in a zip file, or of the one file that they were put together in."""
+    import importlib.util  # here, as only a check with a state needs both
+    import pkgutil
     sources = [(__loader__, __file__)]
     if __package__:
         specs = [importlib.util.find_spec(__package__ + "." + name) for _, name, _ in
