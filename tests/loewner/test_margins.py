@@ -248,7 +248,9 @@ def at_once_margins(rng, cases, tools, read):
 
         names = {"w": w, "at": x, "at_end": at_end, "SLOTS": 18, "fabs": abs, "larger": max,
                  "square": lambda x: x * x, "least_eigenvector": eigenvector,
-                 "double_sincos": sines_of(tools, read)}
+                 "double_sincos": sines_of(tools, read),
+                 "size_of": ctext.function(read("loewner/problem.c"), "size_of").bound(
+                     {"fabs": abs})}
         ctext.run(statements, names)
         pull = [mpmath.sin(k0 * mp(x[0]) + k1 * mp(x[1]) + mp(phase)) * mp(k0 * Fraction(n[0])
                 + k1 * Fraction(n[1])) ** 2 for k0, k1, phase, *_ in patch.waves]
