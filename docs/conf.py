@@ -12,6 +12,7 @@ html_theme = "alabaster"
 html_theme_options = {"description": "Proofs about invariant tori of symplectic maps",
                       "page_width": "70em", "sidebar_width": "17em"}
 html_copy_source = False
+smartquotes = False                     # V'' has two primes, not a quotation mark
 
 # Pages are written for GitHub, too: $...$ is mathematics, and sections are linked to by its names.
 myst_enable_extensions = ["dollarmath"]
@@ -35,5 +36,11 @@ def readable(app, what, name, obj, options, lines):
         lines[:] = ["::", "", *("    " + line for line in text.splitlines()), ""]
 
 
+def skips(app, what, name, obj, skip, options):
+    """Leaves out the fields of named tuples, which the docstrings of their classes list."""
+    return skip or (getattr(obj, "__doc__", None) or "").startswith("Alias for field number")
+
+
 def setup(app):
+    app.connect("autodoc-skip-member", skips)
     app.connect("autodoc-process-docstring", readable, priority=600)    # after numpydoc
