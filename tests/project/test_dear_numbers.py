@@ -91,7 +91,7 @@ def rows_of_tori():
         rotation = vector.strip("`") or rotation
         value = re.findall(r"0\.\d+", name)
         ends = ("0", *value)[-2:] if "every" in name else value[:1]
-        if day.startswith("20") and float(seconds) < 60:
+        if day.startswith("20") and float(seconds.replace(",", "")) < 60:
             yield (map_ if "every k" not in name else "standard", ends, rotation, size, residual,
                    needed)
 
