@@ -81,10 +81,8 @@ memcheck: $(VENV)/installed
 
 # The rooms whose tests call the core in ways of their own.  The other rooms ask nothing else of it, and
 # sanitizers find nothing in Python, figures, reports, tables or the texts of roundings.  Linked proofs
-# are many ordinary searches, and so are the tasks of a Dask cluster and a sweep.  Of the experiments one
-# has C code.
+# are many ordinary searches, and so are the tasks of a Dask cluster and a sweep.
 SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover search thesis) \
-    tests/experiments/test_least_action.py \
     $(addprefix --ignore=tests/, loewner/test_margins.py prover/test_best_shifts.py \
     $(addprefix orbits/test_, farey.py pictures.py points.py sweep.py) \
     $(addprefix prover/test_, links.py report.py)) -k 'not dask and not long_call'
