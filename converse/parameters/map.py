@@ -315,7 +315,7 @@ class ParameterMap(Kept):
         return json.dumps(data, indent=1) + "\n"
 
     @classmethod
-    def _read(cls, path: Path) -> "ParameterMap":
+    def load(cls, path: Path) -> "ParameterMap":
         damaged = ": is not a map, or truncated"
         text = files.read_text(path, "map", damaged)
         try:

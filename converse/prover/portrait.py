@@ -259,7 +259,7 @@ class Portrait(Kept):
               for x in sorted(self.found) for region in self.found[x]]])
 
     @classmethod
-    def _read(cls, path: Path) -> "Portrait":
+    def load(cls, path: Path) -> "Portrait":
         lines, sha256 = unsealed(path, FIRST_LINE, "portrait")
         try:
             start = lines.index("columns:")

@@ -220,6 +220,6 @@ class Proof(Kept):
         return text_of(self)
 
     @classmethod
-    def _read(cls, path):
+    def load(cls, path):
         from .proof_file import load
         return load(path)

@@ -1,4 +1,4 @@
-"""Results that have a file: proofs, portraits, maps of parameter space."""
+"""Results that have a file: proofs, portraits, maps of parameter space, tori."""
 
 import re
 from typing import TYPE_CHECKING, List, Tuple, Type, TypeVar
@@ -17,11 +17,6 @@ class Kept:
 
     def _text(self) -> str:
         """The content of the file."""
-        raise NotImplementedError
-
-    @classmethod
-    def _read(cls: Type[Result], path: Path) -> Result:
-        """load()."""
         raise NotImplementedError
 
     def save(self, path: Path) -> str:
@@ -59,7 +54,7 @@ class Kept:
         ConverseError
             The file cannot be read, is of another kind, or is damaged; the text says where.
         """
-        return cls._read(path)
+        raise NotImplementedError
 
     def verify(self, jobs: int = 1) -> "check.Result":
         """Verifies the result anew by the code of converse-check, which believes nothing of it and

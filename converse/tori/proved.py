@@ -12,8 +12,8 @@ from .. import check
 from ..model.exact import Ends
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
-from ..storage import files
-from ..storage.files import ConverseError
+from ..storage.files import ConverseError, Path
+from ..storage.kept import Kept
 from . import certificate
 from .find import find
 from .rotation import Rotation, rotation_of
@@ -64,7 +64,7 @@ class Piece(check.Verified):
 
 
 @dataclass(frozen=True)
-class ProvedTorus:
+class ProvedTorus(Kept):
     """A theorem, which the checker has verified.  For every s of the range (for the potential, if
     nothing varies) the map has a real analytic invariant graph, conjugate to the rotation.  Each
     graph is within its piece's distance of the piece's torus.
@@ -87,6 +87,9 @@ class ProvedTorus:
 
     def __repr__(self) -> str:
         return "<ProvedTorus, rotation %s, within %.1e>" % (self.rotation, self.distance)
+
+    def _text(self) -> str:
+        return self.certificate
 
     @property
     def torus(self) -> Torus:
@@ -137,28 +140,8 @@ class ProvedTorus:
         tori = [piece.torus for piece in self.pieces]
         return torus_figure.page(tori, self.pieces) if ax is None else torus_figure.into(ax, tori)
 
-    def verify(self, jobs: int = 1) -> check.Result:
-        """Verifies the certificate anew by the code of converse-check.
-
-        Parameters
-        ----------
-        jobs
-            How many pieces of a range are verified at a time, in processes.
-
-        Returns
-        -------
-        check.Result
-            True if the theorem is verified; its text is the checker's report.
-
-        Raises
-        ------
-        check.Rejected, check.NotConfirmed, check.Unusable
-            The theorem is not verified; the text says why.
-        """
-        return files.verified(self, jobs)
-
     @classmethod
-    def load(cls, path: Union[str, "os.PathLike[str]"], jobs: int = 1) -> "ProvedTorus":
+    def load(cls, path: Path, jobs: int = 1) -> "ProvedTorus":
         """Reads a certificate and lets the checker verify it: the result is a theorem again.
 
         Parameters
@@ -176,27 +159,6 @@ class ProvedTorus:
             The checker does not confirm the torus.
         """
         return _verified(certificate.read(path).tori, jobs, lambda text: None)
-
-    def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
-        """Writes the certificate (docs/reference/torus-certificate.md).
-
-        Parameters
-        ----------
-        path
-            The file, which is replaced if it exists; the text is compressed if the name ends in
-            .gz.
-
-        Returns
-        -------
-        str
-            The SHA-256 of the uncompressed text.
-
-        Raises
-        ------
-        ConverseError
-            The file cannot be written; an older file is intact.
-        """
-        return files.write_text(path, self.certificate)
 
 
 def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
