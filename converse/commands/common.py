@@ -273,12 +273,15 @@ def ended(command, run, interrupted):
         message, status = "a part of Python cannot be loaded (%s); give it more memory, or " \
                           "install it anew" % error, BAD
     except OSError as error:
-        message, status = "the output cannot be written (%s)" % files.reason(error), BAD
+        gone = isinstance(error, BrokenPipeError)       # the reader, such as head, had enough
+        message = "" if gone else "the output cannot be written (%s)" % files.reason(error)
+        status = ENDED_BY + signal.SIGPIPE if gone else BAD
         with contextlib.suppress(OSError):      # the interpreter must not try to flush it again
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if unsaved:
         message, status = "; ".join(filter(None, [message, *unsaved])), BAD
-    tell(message, command)
+    if message:
+        tell(message, command)
     return status
 
 

@@ -16,7 +16,8 @@ ENDING = ending(
     "converse-check  verifies the portrait independently\n"
     "converse        proves that there is no circle at all\n"
     "converse-tori   proves circles, as --rotation does", (
-        (0, "all columns are done"), (1, "some are not, or nothing is proved"),
+        (0, "all columns are done, and all circles proved"),
+        (1, "some are not, or no part of phase space is proved"),
         (2, "bad usage, input or file"), (SIGNALS[0], SIGNALS[1] + ", the portrait saved")))
 
 
@@ -76,7 +77,10 @@ def run(options):
     say(found.report())
     if options.graphics is not None:
         from ..draw import portrait_figure
-        portrait_figure.draw(found, options.graphics, _tori(rotations, found.problem))
+        tori = _tori(rotations, found.problem)
+        portrait_figure.draw(found, options.graphics, tori)
+        if len(tori) < len(rotations):
+            return 1
     return 0 if found.complete and found.undecided < 1 else 1
 
 

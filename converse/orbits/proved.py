@@ -142,7 +142,7 @@ class ProvedOrbit:
             "%s : %r" % (action_words(state.potential), self.action)] + [
             "Exponent : %r" % (ends,) for ends in self.exponents]
         if state.potential.n == 1 and self.residue[0] > -10 ** SHOWN_PLACES:
-            lines.append("Greene's residue : %r" % (self.residue,))
+            lines.append("Residue : %r" % (self.residue,))
         return "\n".join(lines) + "\n"
 
 

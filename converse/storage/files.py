@@ -40,8 +40,8 @@ def check_new(path, resumed=None):
     """ConverseError if a backup would overwrite a file that is neither empty nor `resumed`."""
     if os.path.exists(path) and os.path.getsize(path) and not (
             resumed is not None and same(path, resumed)):
-        raise ConverseError("%s: exists; to continue it, name it with -r (resume=), or else name "
-                            "another file or remove it" % path)
+        raise ConverseError("%s: exists; to continue it, resume it (-r of the commands), or else "
+                            "name another file or remove it" % path)
 
 
 def reason(error):

@@ -8,7 +8,8 @@ from typing import Iterator, Optional, Sequence, Tuple, Union
 from ..model.exact import decimal_text, rounded, rounded_text, short_text
 from ..model.map import from_patch
 from ..model.problem import Problem
-from ..model.statement import TORUS, conditions, ended, indented, labelled, map_lines
+from ..model.statement import (TORUS, conditions, ended, indented, labelled, map_lines,
+                               parameters)
 from ..storage.files import plain
 from ..version import __version__
 from .find import NotFound
@@ -170,12 +171,29 @@ def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotP
              *ended(indented(["was examined " + " ".join(conditions(stated))])), ""]
     entries = [("Not found" if isinstance(reason, NotFound) else "Not proved",
                 plain(" ".join(str(reason).split())))]
+    if isinstance(reason, NotFound):
+        entries += _reached(problem, reason.amplitude)
     if by_hand:
         entries.append(("By hand", "%s; without such a flag the program chooses"
                         % ", ".join(by_hand)))
     for label, text in (*entries, *_rotation_lines(rotation), *_input_lines(problem)):
         lines += labelled(label, text)
     return "\n".join(lines) + "\n"
+
+
+def _reached(problem: Problem, amplitude: Sequence[float]) -> Iterator[Tuple[str, str]]:
+    """The value at which the last torus was found, of the one parameter whose range was asked for.
+    Nothing if V does not have these amplitudes at any value."""
+    potential, part = family(problem)
+    named = [each for each in parameters(problem) or () if each[1] < each[2]]
+    if part is None or len(named) != 1:
+        return
+    (name, low, high), = named
+    way = [float(q) for q in part]
+    off = [x - float(p) for x, p in zip(amplitude, potential.amplitude)]
+    s = sum(map(float.__mul__, off, way)) / math.fsum(q * q for q in way)
+    if all(math.isclose(x, s * q, abs_tol=1e-9) for x, q in zip(off, way)):
+        yield "Reached", "%s = %.6g, the last torus that was found" % (name, (low + high) / 2 + s * (high - low) / 2)
 
 
 def _up(x: Union[float, Fraction], digits: int = 3) -> str:

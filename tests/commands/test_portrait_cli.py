@@ -35,8 +35,10 @@ def test_portrait_is_kept_continued_and_drawn(run, inputs, tmp_path):
     status, out, err = run(inputs["range"], "--columns", 30, "--depth", 9, "-b", path,
                            "--time-limit", 0)
     assert (status, err) == (1, "") and "Columns : 0 of 15" in out
-    status, out, err = run("-r", path, "-g", picture, "--rotation", "golden")
-    assert (status, err) == (0, "") and "Columns : 15 of 15" in out
+    status, out, err = run("-r", path, "-g", picture, "--rotation", "golden",
+                           "--rotation", "t^2+t-1: t/40")
+    assert (status, err) == (1, "") and "Columns : 15 of 15" in out
+    assert ": no torus of this rotation number" in out
     assert "for every t[1] in [-1, 1]" in out and check.verify(path)
     assert "rotation number golden : proved" in out and picture.read_bytes()[:4] == b"\x89PNG"
     before = path.read_bytes()

@@ -55,7 +55,7 @@ RUNS = {
     "orbits": [(orbits_cli, "find trig 3,5/7 0.01 --prove", PROVED,
                 {"Stability indices", "Second variation", "Exponent"}),
                (orbits_cli, "find standard 3/8 0.5 --minimax --prove", PROVED,
-                {"Residue", "Pass", "Flux", "Greene's residue"}),
+                {"Residue", "Pass", "Flux"}),
                (orbits_cli, "find $/standard-k090.in 3,0/8 1", PROVED, {"Map", "Potential"})],
     "a portrait": [(portrait_cli, "$/standard-k090.in --columns 8 --depth 6 -b x.portrait", PARTLY,
                     {"Columns", "Undecided in a column"}),
