@@ -193,7 +193,8 @@ def _reached(problem: Problem, amplitude: Sequence[float]) -> Iterator[Tuple[str
     off = [x - float(p) for x, p in zip(amplitude, potential.amplitude)]
     s = sum(map(float.__mul__, off, way)) / math.fsum(q * q for q in way)
     if all(math.isclose(x, s * q, abs_tol=1e-9) for x, q in zip(off, way)):
-        yield "Reached", "%s = %.6g, the last torus that was found" % (name, (low + high) / 2 + s * (high - low) / 2)
+        yield "Reached", "%s = %.6g, the last torus that was found" % (
+            name, (low + high + s * float(high - low)) / 2)
 
 
 def _up(x: Union[float, Fraction], digits: int = 3) -> str:
