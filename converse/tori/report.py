@@ -8,8 +8,7 @@ from typing import Iterator, Optional, Sequence, Tuple, Union
 from ..model.exact import decimal_text, rounded, rounded_text, short_text
 from ..model.map import from_patch
 from ..model.problem import Problem
-from ..model.statement import (TORUS, conditions, ended, indented, labelled, map_lines,
-                               parameters)
+from ..model.statement import TORUS, conditions, ended, indented, labelled, map_lines, parameters
 from ..storage.files import plain
 from ..version import __version__
 from .find import NotFound
