@@ -47,7 +47,7 @@ class Parser(argparse.ArgumentParser):
 
 MAP = ("the map  y' = y + J',  J' = J - grad V(y),  V(y) = - the sum of A sin(k.y + phase), "
        "of one or two angles y modulo 2 pi")
-SIGNALS = "129, 130, 143", "ended by SIGHUP, Ctrl-C or SIGTERM"
+SIGNALS = "129, 130, 141, 143", "ended by SIGHUP, Ctrl-C, a closed pipe or SIGTERM"
 
 
 def ending(example, others, statuses):
