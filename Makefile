@@ -81,11 +81,13 @@ memcheck: $(VENV)/installed
 
 # The rooms whose tests call the core in ways of their own.  The other rooms ask nothing else of it, and
 # sanitizers find nothing in Python, figures, reports, tables or the texts of roundings.  Linked proofs
-# are many ordinary searches, and so are the tasks of a Dask cluster and a sweep.
+# are many ordinary searches, and so are the tasks of threads, processes, a Dask cluster and a sweep.
+# Orbits of thousands of points are followed as those of hundreds; test_the_longest_orbits follows some.
 SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover search thesis) \
     $(addprefix --ignore=tests/, loewner/test_margins.py prover/test_best_shifts.py \
     $(addprefix orbits/test_, farey.py pictures.py points.py sweep.py) \
-    $(addprefix prover/test_, links.py report.py)) -k 'not dask and not long_call'
+    $(addprefix prover/test_, links.py parallel.py report.py shifts.py)) \
+    -k 'not dask and not long_call and not as_long_as and not are_long_only'
 
 # Safe path: the clone, where this starts, holds a core without sanitizers.
 sanitize: export CFLAGS = $(SANITIZE)

@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from ..model.problem import Problem
 from ..model.region import symmetries_used
+from ..storage.files import Path
 from ..storage.kept import Kept
 from ..version import __version__
 from . import tree
@@ -220,6 +221,6 @@ class Proof(Kept):
         return text_of(self)
 
     @classmethod
-    def load(cls, path):
+    def load(cls, path: Path) -> "Proof":
         from .proof_file import load
         return load(path)

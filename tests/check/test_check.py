@@ -1774,7 +1774,7 @@ def test_exact_bound(texts, generator, monkeypatch, chosen):
     """From the cell of a claim to the bound: along true orbits the second variation is below it,
     and it is the polynomial but for the error."""
     cases, least = 0, math.inf
-    for _ in range(20 * TORTURE):
+    for _ in range(12 * TORTURE):
         criterion, cell, prism = random_prism(generator, texts, 9)
         waves, one = waves_of(criterion.claim), mp.mpf(criterion.fixed.one)
         l = criterion.least_pivot(cell)
@@ -1809,7 +1809,7 @@ def test_exact_bound(texts, generator, monkeypatch, chosen):
                 assert model / unit - true <= 30 * error / unit
             least = min(least, bound / unit - true)
             cases += 1
-    assert cases > 40 * TORTURE and 0 < least < 0.1
+    assert cases > 24 * TORTURE and 0 < least < 0.1
 
 
 def test_one_bound_in_two_arithmetics(np, texts, generator, monkeypatch):
@@ -1818,7 +1818,7 @@ def test_one_bound_in_two_arithmetics(np, texts, generator, monkeypatch):
     monkeypatch.setattr(check, "MAX_SITES", 60)
     monkeypatch.setattr(check, "FIRST_TRY_SITES", 60)
     cases = 0
-    for _ in range(20 * TORTURE):
+    for _ in range(12 * TORTURE):
         criterion, cell, prism = random_prism(generator, texts, 9)
         fast, l = check.Lockstep([criterion.claim]), criterion.least_pivot(cell)
         with np.errstate(all="ignore"):
@@ -2021,7 +2021,7 @@ def test_lockstep_orbits(np, generator, monkeypatch, bits):
         step(self)
 
     monkeypatch.setattr(check.Prisms, "step", records)
-    for _ in range((16 if bits == 64 else 8) * TORTURE):
+    for _ in range((10 if bits == 64 else 6) * TORTURE):
         prisms = random_prisms(np, generator)
         known = [(k, Fraction(phase)) for k, phase in prisms.shape.known]
         centres.clear()
@@ -2056,7 +2056,7 @@ def test_lockstep_orbits(np, generator, monkeypatch, bits):
                             cases += 1
                             tight += abs(off) > left / 20
                             others += w > 2
-    assert cases > 500 * TORTURE and tight > 20 and others > 50
+    assert cases > 300 * TORTURE and tight > 12 and others > 30
 
 
 def some(generator):

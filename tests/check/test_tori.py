@@ -1182,7 +1182,7 @@ def test_the_number_of_modes_is_estimated():
 @pytest.mark.slow
 def test_a_torus_that_is_nearly_odd(run, tmp_path):
     """Parts of 8e-6 that are not odd are left out first, and then are not."""
-    torus = prove(Problem(SymplecticMap([(1, 0), (0, 1), (1, 1)], ["0.3", "0.3", "0.000001"])),
+    torus = prove(Problem(SymplecticMap([(1, 0), (0, 1), (1, 1)], ["0.1", "0.1", "0.000001"])),
                   read_rotation("T49", 2))
     torus.save(tmp_path / "torus")
     assert run((tmp_path / "torus").read_text(encoding="utf-8"))[0] == 0

@@ -28,7 +28,7 @@ from converse.prover.tree_search import MANY
 import kernels
 from truth import SANITIZED, TORTURE, beta, mp, rng_for, uniform
 
-CASES = (1000 if SANITIZED else 6500) * TORTURE
+CASES = (1000 if SANITIZED else 4000) * TORTURE
 SITES = 60                              # of the core's longest vector
 SITE = 79                               # numbers of a point
 BOUND = 5 + 2 * SITES                   # numbers that the kernel loewner_bound returns

@@ -24,7 +24,7 @@ def beta_at(x):
 def test_trace_and_eigenvalues_over_a_prism():
     rng = rng_for("btrace")
     tight = []
-    for _ in range(400 * TORTURE):
+    for _ in range(200 * TORTURE):
         prism = list_prism(rng, rng.choice(("3", "0.1", "0.001")), (-2, 2))
         t_lo, t_hi = kernels.btrace(prism, DP)
         (m_lo, m_hi), (b_lo, b_hi) = kernels.Blams(prism, DP)
@@ -133,7 +133,7 @@ def test_bounds_over_a_cell_of_the_torus():
     """Ranges of either sign, the longer side up or down, down to single numbers; cells down to
     points, where nothing but roundings separates the bounds from the truth."""
     rng = rng_for("cell")
-    for _ in range(800 * TORTURE):
+    for _ in range(400 * TORTURE):
         size = Fraction(10)**rng.randrange(-9, 9)
         ends = [[decimal(uniform(rng, -2, 2) * size * rng.choice((1, 1, Fraction(1, 50))))
                  for _ in range(2)] for _ in range(3)]
@@ -243,7 +243,7 @@ def test_uniform_cone():
     """low and high are the roots of d = M - k/(4 d), rounded outwards."""
     rng = rng_for("cone")
     for k in (4, 16):
-        for i in range(2000 * TORTURE):
+        for i in range(1000 * TORTURE):
             M = decimal(uniform(rng, 0, 5) + (2 if k == 4 else 4), 30)
             low, high = kernels.call("cone", [M, k], 2, DP)
             # x^2 - M x + k/4 is positive outside the roots
@@ -270,7 +270,7 @@ def test_next_block():
     """For blocks d within bounds, and any point of the prism, d' = beta - 1/d is within the
     next."""
     rng = rng_for("blocks")
-    for _ in range(1000 * TORTURE):
+    for _ in range(500 * TORTURE):
         prism = list_prism(rng, rng.choice(("0.5", "0.01")), (-1, 1))
         with mpmath.workdps(DIGITS):
             blocks = []
@@ -299,7 +299,7 @@ def test_next_block():
 def test_next_block_where_nothing_is_lost(dp):
     """beta and d multiples of the identity: all three bounds are equalities, but for rounding."""
     rng = rng_for("equality%d" % dp)
-    for _ in range(500 * TORTURE):
+    for _ in range(250 * TORTURE):
         a, v, d = (decimal(uniform(rng, *ends), 12) for ends in ((0, 1), (0, 6), ("0.1", 4)))
         prism = [a, a, 0, 0, 0, v, v] + [0] * 49
         slope, least = kernels.call("least_lambda", prism + [2 * d, d, d], 2, dp)
@@ -313,7 +313,7 @@ def test_next_block_where_nothing_is_lost(dp):
 def test_few_digits(dp):
     """The bounds over a prism about as small as the last place."""
     rng = rng_for("few%d" % dp)
-    for _ in range(400 * TORTURE):
+    for _ in range(200 * TORTURE):
         centre, matrix = list_prism(rng, Fraction(1, 10**(dp + 3)), (-2, 2))
         prism = (centre, [[x / 10**(dp + 2) for x in row] for row in matrix])
         t_lo, t_hi = kernels.btrace(prism, dp)
@@ -344,7 +344,7 @@ def test_what_makes_no_sense_is_refused(name, numbers, nout):
 def test_uniform_cone_with_few_digits(dp):
     rng = rng_for("cone%d" % dp)
     for k in (4, 16):
-        for _ in range(1000 * TORTURE):
+        for _ in range(500 * TORTURE):
             M = decimal(uniform(rng, 0, 5) + (2 if k == 4 else 4), 30)
             low, high = kernels.call("cone", [M, k], 2, dp)
             with mpmath.workdps(DIGITS):
