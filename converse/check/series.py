@@ -45,8 +45,8 @@ class Box:
     def __init__(self, norm, limit, degree):
         self.norm, self.limit, self.degree = norm, limit, degree
         wide, high = ([math.floor(w * limit) for w in norm.widths()] + [0])[:2]
-        # The sums over modes of equal |k| of two series are multiplied for each pair of powers.
-        terms = max((2 * wide + 1) * (2 * high + 1) * (degree + 1), (limit + 1) * (degree + 1) ** 2)
+        # A profile has a sum for each |k|, which weights make more than there are k.
+        terms = max((2 * wide + 1) * (2 * high + 1), limit + 1) * (degree + 1)
         if terms > MAX_TERMS:
             raise NotConfirmed("series of %d terms are needed, the checker's limit is %d"
                                % (terms, MAX_TERMS))
@@ -345,19 +345,16 @@ class Ring:
     def _beyond(self, p, q, limit):
         """The sum of the products of all norms of modes that have |k| + |k'| > limit or
         j + j' > degree, from the two profiles."""
-        tails = []
-        for sums in q:
-            tails.append([0, *itertools.accumulate(reversed(sums))])    # of the last 0, 1, 2, ...
+        # Of q, the last 0, 1, 2, ... lengths, added over the powers up to j for each j.
+        tails = list(itertools.accumulate(
+            [[0, *itertools.accumulate(reversed(sums))] for sums in q],
+            lambda x, y: list(map(operator.add, x, y))))
         total, spare = 0, self.box.limit - limit
-        for i, sums in enumerate(p):
-            whole = sum(sums)
-            for j, rest in enumerate(tails):
-                if i + j > self.box.degree:
-                    total += whole * rest[-1]
-                else:                   # |k'| > limit - |k|: the last |k| + spare of them, or all
-                    near = sums[:len(rest) - spare]
-                    total += sum(map(operator.mul, near, rest[spare:])) \
-                        + (whole - sum(near)) * rest[-1]
+        for sums, rest in zip(p, reversed(tails)):      # rest: j' <= degree - j
+            # |k'| > limit - |k|: the last |k| + spare of them, or all
+            near = sums[:len(rest) - spare]
+            total += sum(map(operator.mul, near, rest[spare:])) - sum(near) * rest[-1] \
+                + sum(sums) * tails[-1][-1]
         return (total >> self.bits + FINE) + 1
 
     def exponential(self, f):
