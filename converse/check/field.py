@@ -18,6 +18,7 @@ E_LOW = Fraction(271828182845904, 10 ** 14)
 SHARES = 64                             # An edge of the unit ball is cut into this number of parts.
 BITS = 256                              # The root is first computed to this number of bits.
 TURN_BITS = 192                         # k.omega modulo 1 is computed to this number of bits.
+LARGE = "the rotation vector has too large coefficients for this checker"
 SHY = 16                                # Divisors above SHY times the tail's bound do not count.
 
 
@@ -147,7 +148,16 @@ class Field:
             low, high = [x * 2 ** bits for x in self.interval(element, bits + more)]
             if high - low < Fraction(1, 2):
                 return round((low + high) / 2)
-        raise NotConfirmed("the rotation vector has too large coefficients for this checker")
+        raise NotConfirmed(LARGE)
+
+    def truncated(self, element, places):
+        """The element to so many decimal places, rounded towards 0: both ends of an interval that
+        holds it agree on them, so that large coordinates, which cancel, do not make them false."""
+        for bits in (BITS, 512, 2048, 8192):
+            low, high = [math.trunc(x * 10 ** places) for x in self.interval(element, bits)]
+            if low == high:
+                return Fraction(low, 10 ** places)
+        raise NotConfirmed(LARGE)
 
     def product(self, x, y):
         """Of two elements."""

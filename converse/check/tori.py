@@ -833,9 +833,8 @@ def existence_report(claim, setting, found):
     n, worst = claim.dimension, max(found, key=lambda x: x.residual / x.needed)
     places = 12
     omega = ", ".join(["%s = %s..." % (
-        sum_text(element, POWERS),
-        decimal_text(Fraction(math.trunc(setting.field.interval(element)[0] * 10 ** places),
-                              10 ** places))) for element in claim.rotation])
+        sum_text(element, POWERS), decimal_text(setting.field.truncated(element, places)))
+        for element in claim.rotation])
     lines = ["Verified :",
              "THEOREM.  The map y' = y + J', J' = J - %s of %s (modulo 2 pi),"
              % (("grad V(y)", "two angles y") if n == 2 else ("V'(y)", "an angle y")),

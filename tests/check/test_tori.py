@@ -87,6 +87,19 @@ def test_the_golden_circle_is_verified(run):
     assert run(gzip.compress(sealed(BODY).encode()))[:2] == (0, out)
 
 
+@pytest.mark.parametrize("digits", [20, 66, 70])
+def test_large_coordinates_of_the_rotation_do_not_make_its_decimals_false(run, digits):
+    """They cancel, and with 256 bits of t they would leave few true decimals, or none."""
+    with mp.workdps(120):
+        t = (mp.sqrt(5) - 1) / 2
+        whole = int(mp.floor(10 ** digits * t))
+        exact = mp.nstr(10 ** digits * t - whole, 20)[:14]
+    text = HEADER.replace("0.5", "0").replace("0 1\nframe", "-%d 1e%d\nframe" % (whole, digits))
+    status, out, err = run(sealed(text % 0))
+    assert (status, err) == (0, "")
+    assert "t = %s..." % exact in out
+
+
 def test_quiet_says_nothing(run, monkeypatch):
     monkeypatch.setattr(check, "QUIET_SECONDS", -1)
     assert run(sealed(BODY), "--quiet") == (0, "", "")
@@ -553,6 +566,13 @@ def test_a_wide_enclosure_is_within_three_quarters():
         exact = one.interval((rest, factor), 400)[0] * 2 ** bits
         errors.append(abs(found - exact))
     assert max(errors) <= Fraction(3, 4)
+
+
+def test_decimals_that_cannot_be_told_are_not_printed():
+    one = field.Field((-1, 1, 1), Fraction(0), Fraction(1))
+    assert one.truncated((Fraction(0), Fraction(-1)), 3) == Fraction(-618, 1000)
+    with pytest.raises(check.NotConfirmed, match="too large coefficients"):
+        one.truncated((Fraction(0), Fraction(10 ** 2500)), 12)
 
 
 def test_norms_have_the_common_denominator():
