@@ -2242,6 +2242,32 @@ def test_lockstep_bound(np, generator, chosen):
     assert cases > 36 * TORTURE and 0 < least < (1e-6 if chosen == "at random" else 1)
 
 
+def test_what_the_centres_miss_counts(np, generator, monkeypatch):
+    """The centre's step misses `push` at each site (C18), and a centre at either end WHOLE_ERROR:
+    with larger ones every bound that has multipliers is larger."""
+    grown = 0
+    for _ in range(4 * TORTURE):
+        prisms = random_prisms(np, generator)
+        with np.errstate(all="ignore"):
+            assert all(prisms.follow())
+            n, tails = prisms.test_vectors()
+            prisms.test_vectors = lambda: (n, tails)
+            usual, _ = prisms.bound()
+            long = np.isfinite(usual) & [sum(site[0][lane] for site in prisms.sites) > 2
+                                         for lane in range(prisms.size)] & (abs(usual) > 1e-9)
+            push, prisms.push = prisms.push, prisms.push + 1e-3
+            further, _ = prisms.bound()
+            prisms.push = push
+            with monkeypatch.context() as patch:
+                patch.setattr(check, "WHOLE_ERROR", 1e-3)
+                ends, _ = prisms.bound()
+            again, _ = prisms.bound()
+        assert (again[long] == usual[long]).all()
+        assert (further[long] > usual[long]).all() and (ends[long] > usual[long]).all()
+        grown += long.sum()
+    assert grown > 10
+
+
 def test_sums_in_blocks(np, generator, monkeypatch):
     """Blocks of one site, of three or of all lead to the same sums.  So do their errors; N blocks
     of one site have as many terms one after the other as one block of N, and blocks of three fewer.
