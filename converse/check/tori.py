@@ -26,7 +26,7 @@ from .words import decimal_text
 
 MAX_LENGTH = 1 << 21                    # of a mode, with the weights alpha
 MAX_WIDTH = 200                         # of the strip of a torus, times its longest mode
-MAX_GRID = 1 << 20                      # points at which L is inverted in doubles
+MAX_GRID = 1 << 22                      # numbers: entries of L on the grid where it is inverted
 SHARES_OF_LOSS = [Fraction(x, 20) for x in (1, 2, 4, 8, 16)]        # s of the theorem
 CHANGES = [Fraction(x, 1000) for x in (1, 2, 5, 10, 20, 40, 70, 100, 150)]     # t l0 m0 a0
 ROUGH_BITS = 64                         # The series for the constants have these bits.
@@ -419,9 +419,9 @@ def approximate_inverse(torus, ring, f, near):
     shape = [power_of_two(3 * reach[1] + 1), power_of_two(3 * reach[0] + 1),
              power_of_two(2 * step) if step > 1 else 1]
     size = math.prod(shape)
-    if size > MAX_GRID:
+    if size * len(f.entries) > MAX_GRID:
         raise NotConfirmed("a grid of %d points is needed, the checker's limit is %d"
-                           % (size, MAX_GRID))
+                           % (size, MAX_GRID // len(f.entries)))
     places = []                         # of the modes |k| <= near
     for at, (m, length) in enumerate(zip(box.modes(), box.lengths)):
         if length <= near:

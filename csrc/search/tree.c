@@ -87,7 +87,6 @@ static void halve(cv_search *s, int axis)
 
     s->counts.cuts++;
     split_cell(&upper->cell, axis, &lower);
-    upper->note = -1;
     push(s, &lower);
 }
 
