@@ -8,8 +8,9 @@ a table of the modules.
 """
 
 from .command import main, parser
-from .failures import Failure, NotConfirmed, Rejected, Unusable, shown
+from .failures import Failure, NotConfirmed, Rejected, Unusable
 from .limits import INTERRUPTED, NOT_CONFIRMED, PART, REJECTED, SPOT_CHECK, UNUSABLE, VERIFIED
+from .progress import shown
 from .run import Result, load, read, verify
 from .torus_file import TorusClaim, read_torus
 from .tree import check_tree

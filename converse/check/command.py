@@ -7,8 +7,9 @@ import re
 import signal
 import sys
 
-from .failures import Failure, Unusable, complain, reason
+from .failures import Failure, Unusable
 from .limits import INTERRUPTED, UNUSABLE, VERIFIED
+from .progress import complain, reason
 from .run import verify
 from .signals import interruptible
 from .version import __version__

@@ -1,7 +1,6 @@
-"""The ways in which a check fails, and how they are said in one line."""
+"""The ways in which a check fails."""
 
 import contextlib
-import sys
 
 from .limits import NOT_CONFIRMED, REJECTED, UNUSABLE
 
@@ -17,13 +16,9 @@ class Rejected(Failure):
 
 
 class NotConfirmed(Failure):
-    """The checker has reached a limit: the claim of the file may be true or false.
+    """The checker has reached a limit: the claim of the file may be true or false."""
 
-    residual, needed: of a torus, if it is not accurate enough.
-    """
-
-    residual = needed = None
-
+    residual = needed = None            # of a torus, if it is not accurate enough
     status, word = NOT_CONFIRMED, "not confirmed: "
 
 
@@ -31,11 +26,6 @@ class Unusable(Failure):
     """The arguments or the file cannot be used at all."""
 
     status, word = UNUSABLE, ""
-
-
-def reason(error):
-    """An OSError in words."""
-    return getattr(error, "strerror", None) or str(error)
 
 
 @contextlib.contextmanager
@@ -47,13 +37,3 @@ def named(name):
         if name:
             error.args = "%s: %s" % (name, error),
         raise
-
-
-def shown(text):
-    """The text without anything that could steer a terminal, on one line."""
-    return "".join([x if x.isprintable() else x.encode("unicode_escape").decode() for x in text])
-
-
-def complain(text):
-    with contextlib.suppress(OSError, AttributeError):      # closed, or there is none
-        print("converse-check: " + shown(text), file=sys.stderr, flush=True)

@@ -15,9 +15,9 @@ from fractions import Fraction
 
 from .arith import fixed_of, turn_of, turned
 from .claim import IDENTITY
-from .failures import complain
 from .limits import (FIRST_TRY_SITES, HALVINGS_APART_MAX, MATTERS_MIN, MAX_CUTS, MAX_HALVINGS,
                      MAX_PIECES, MAX_SITES, SITE_PENALTIES)
+from .progress import complain
 
 np = None                               # numpy, once the fast path is wanted
 UNIT = 2.0 ** -53                       # the unit roundoff u of doubles

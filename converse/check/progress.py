@@ -1,13 +1,37 @@
-"""How far a check is, on stderr."""
+"""Messages on stderr: how a check failed, and how far it is."""
 
 import contextlib
 import sys
 import time
 
-from .failures import complain
-
 BAR_SECONDS, LINE_SECONDS = 0.2, 30     # of the progress: on a terminal, elsewhere
 QUIET_SECONDS = 2                       # Elsewhere no step of a shorter check is told.
+
+
+def reason(error):
+    """An OSError in words."""
+    return getattr(error, "strerror", None) or str(error)
+
+
+def shown(text):
+    """The text without anything that could steer a terminal, on one line.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+        Each character that cannot be printed is written as an escape, such as ``\\x1b``.
+    """
+    return "".join([x if x.isprintable() else x.encode("unicode_escape").decode() for x in text])
+
+
+def complain(text):
+    """Prints the text on stderr as a message of the command."""
+    with contextlib.suppress(OSError, AttributeError):      # closed, or there is none
+        print("converse-check: " + shown(text), file=sys.stderr, flush=True)
 
 
 def cost(cell):

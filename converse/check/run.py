@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 from .claim import Claim
 from .criterion import check_at_once
-from .failures import NotConfirmed, Unusable, reason
+from .failures import NotConfirmed, Unusable
 from .limits import MAX_BYTES, PART, SPOT_CHECK, VERIFIED
 from .links import check_links
 from .lockstep import make_lockstep
 from .portrait import FIRST_LINE as PORTRAIT
 from .portrait import Portrait, portrayed, read_portrait
-from .progress import Bar
+from .progress import Bar, reason
 from .proof_file import MAGIC, read_proof
 from .state import state_of
 from .torus_file import TORUS_MAGIC, TorusClaim, read_torus

@@ -9,7 +9,8 @@ import stat
 import sys
 import time
 
-from .failures import Unusable, complain, reason
+from .failures import Unusable
+from .progress import complain, reason
 from .signals import undisturbed
 
 STATE_SECONDS = 10                      # between two writes of the state

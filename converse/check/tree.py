@@ -65,8 +65,18 @@ def tree_counts(claim, letters=""):
 
 
 def check_tree(claim):
-    """Rejected, if the trees are not whole, decided, and what the header's counts say, or a part is
-    without a leaf that is linked to it; then each has its own counts."""
+    """Checks the trees of a claim against the header, and gives each part its own counts.
+
+    Parameters
+    ----------
+    claim : Claim
+
+    Raises
+    ------
+    Rejected
+        A tree is not whole or not decided, the header's counts are not the trees' counts, or no
+        leaf is linked to a part.
+    """
     found = []
     for part, letters in trees(claim):
         with named(part.where):

@@ -10,7 +10,16 @@ from .version import __version__
 
 
 def decimal_text(x):
-    """A finite decimal, exactly."""
+    """A finite decimal, exactly.
+
+    Parameters
+    ----------
+    x : int or Fraction
+
+    Returns
+    -------
+    str
+    """
     places = 0
     while 10 ** places % x.denominator:
         places += 1
