@@ -11,7 +11,7 @@ import chart
 import pytest
 from test_numbers import POINTS, number, rows, said, sharper
 
-from converse import Problem, StandardMap, portray, tori
+from converse import Problem, portray, tori
 from converse.model.map import MuldoonMap
 from converse.parameters.map import PROVED
 from converse.parameters.search import explore
@@ -56,9 +56,9 @@ def test_the_longest_orbits_of_the_standard_map():
 
 # The rows of portrait.md whose maps are drawn: k, columns, depth, and how they are asked for.
 PORTRAITS = {
-    "strips, 15": lambda k: portray(StandardMap(k), depth=15),
-    "strips, 16": lambda k: portray(StandardMap(k), depth=16),
-    "lines, 17": lambda k: portray(StandardMap(k), depth=17, strips=False),
+    "strips, 15": lambda k: portray(MuldoonMap(k, 0, 0), depth=15),
+    "strips, 16": lambda k: portray(MuldoonMap(k, 0, 0), depth=16),
+    "lines, 17": lambda k: portray(MuldoonMap(k, 0, 0), depth=17, strips=False),
     "300 strips, 14": lambda k: portray(Problem.around(
         ("0.9005", 0, 0, 1, 1), ("0.0005", 0, 0, 1, 1)), columns=300, depth=14),
 }
