@@ -118,4 +118,4 @@ def test_tori(name, ends, rotation, size, residual, needed):
     if "piece" in size:
         assert len(found) == int(size.split()[0])
     else:
-        assert abs(found.modes / number(size) - 1) < 0.05
+        assert abs(len(found.k) / number(size) - 1) < 0.05
