@@ -24,15 +24,16 @@ _hook = sys.unraisablehook              # the hook before interruptible()
 
 def _interrupt(number, frame):
     """The handler.  Only the first signal counts: a second one would strike while the backup is
-    saved."""
+    saved.  Python may run the handler of another signal between any two calls of this one, so
+    everything that decides who is first precedes the first call."""
     global _due
-    _heard.append(number)
-    if len(_heard) == 1:
+    if not _heard:
         _due = True
-        while frame is not None and frame.f_code.co_filename != _interrupt.__code__.co_filename:
-            frame = frame.f_back
-        if frame is None:               # else a Resource's __enter__ or __exit__ raises it
-            _raise_if_due()
+    _heard.append(number)
+    while frame is not None and frame.f_code.co_filename != _interrupt.__code__.co_filename:
+        frame = frame.f_back
+    if frame is None:                   # else a Resource's __enter__ or __exit__ raises it
+        _raise_if_due()
 
 
 def _not_passed_on(unraisable):

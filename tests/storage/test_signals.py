@@ -76,6 +76,38 @@ def test_only_the_first_signal_counts():
             raise
 
 
+@pytest.mark.parametrize("second", [signal.SIGINT, signal.SIGTERM])
+def test_two_signals_are_one_whenever_the_second_comes(second):
+    """Also while Python runs the handler of the first."""
+    def trace(frame, event, _):
+        nonlocal steps
+        if frame.f_code is not signals._interrupt.__code__:
+            return None
+        frame.f_trace_opcodes = True
+        steps += event == "opcode"
+        if event == "opcode" and steps == at:
+            signal.raise_signal(second)
+        return trace
+
+    at, steps, struck = 0, 0, 0
+    while at <= steps:
+        at, steps, caught = at + 1, 0, 0
+        with interruptible(ENDING) as came:
+            sys.settrace(trace)
+            try:
+                signal.raise_signal(signal.SIGINT)
+                with postponed():                       # an exception may wait until here
+                    pass
+            except KeyboardInterrupt:
+                caught += 1
+            sys.settrace(None)
+            with postponed():
+                pass
+            struck += len(came.heard) == 2
+        assert caught == 1
+    assert struck > 20
+
+
 def test_a_signal_that_python_does_not_pass_on_is_raised_later():
     """As what is raised in a __del__ is not."""
     class Last:
