@@ -714,6 +714,37 @@ def test_margins(root):
         assert share <= 1 / float(proved[name]), name
 
 
+def test_the_rounding_of_xstar_where_it_decides():
+    """The orbit of x* = x[0] leaves a hyperbolic point, backward in time.  Q has the slope 3e10
+    along x[0] there.  So the term |slope| |D[0]| of (2), of 2^-60 of the slope, is thousands of
+    times the roundings of the sums."""
+    point = [Fraction(-math.pi / 2)] * 2
+    prism = [*map(Fraction, ("8", "0.3", "0")), point[0] + Fraction("3e-10"), point[1],
+             *[Fraction(0)] * 5, *point, Fraction(0)]
+    out, plain = ([mp(x) for x in kernels.call("loewner_bound", [*prism, -11, 1, signs], BOUND, 20)]
+                  for signs in (1, 0))
+    q = sites(prism, -11, 1)
+    assert out[3] == 13 and q[-1].mu[0] * q[0].reach[0] > 1e-9
+    for name, need, there in bound_margins(prism, q, out, plain[0]):
+        assert need <= there, name
+
+
+def test_roundings_of_an_inverse_where_they_decide():
+    """d of x[1] has a condition of some 10^5.  So the roundings of its inverse are thousands of
+    times the WIDEN of force."""
+    conditions = []
+    for k in range(10):
+        v = Fraction(math.pi / 2 - 2.0 ** -9.3 * (1 + k / 41))
+        prism = [*map(Fraction, ("3", "0", "1", "0")), v, *[Fraction(0)] * 5,
+                 Fraction("0.3"), Fraction("0.2"), Fraction(0)]
+        q = sites(prism, 0, 3)
+        d = q[1].d
+        conditions.append((d[0] * d[2] + d[1] ** 2) / (d[0] * d[2] - d[1] ** 2))
+        for name, need, there in step_margins(prism, q[2], q[1], q[3], False):
+            assert need <= there, name
+    assert min(conditions) > 2e5
+
+
 @pytest.mark.parametrize("abc, star, good", [
     (("3", "3", "0"), ("1.57", "1.57"), False), (("3", "0", "0"), ("1.57", "0"), False),
     (("1", "1", "0"), ("1.57", "1.57"), True), (("2.6", "0", "-1"), ("1.57", "0"), True),
