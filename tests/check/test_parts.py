@@ -206,6 +206,18 @@ def test_the_centre_of_the_reversal():
         assert abs(low - min(ends)) < 1e-12 and abs(high - max(ends)) < 1e-12 and low <= high
 
 
+def test_the_centre_of_the_reversal_with_few_bits(monkeypatch):
+    """With 8 bits the cosines are off by units of 1/256, and the bounds still hold the centre."""
+    monkeypatch.setattr(check, "CENTRE_BITS", 8)
+    draw = random.Random(8)
+    for _ in range(200):
+        phase, x, y = (round(draw.uniform(-2, 2), 3) for _ in range(3))
+        p = round(draw.uniform(1, 4), 3)
+        low, high = c0_of(file_of("P", waves=["1 0 %s %s" % (phase, p)], frame="1 0 0 1",
+                                  xstar="%s %s" % (x, y)))
+        assert low <= (x + p / 2 * math.cos(x + math.pi * phase)) / math.pi <= high
+
+
 def decimal(x):
     return check.decimal_text(Fraction(x))
 
@@ -453,6 +465,17 @@ def test_displacements_against_derivatives():
                     near = [max(near[0], where), max(near[1], 1 - where)]
                 cases += 1
     assert min(near) > 0.99
+
+
+def test_the_bound_of_beta_with_few_bits():
+    """With 8 bits the sines are off by units of 1/256, and beta is not above its bound."""
+    fixed, draw = check.fixed_of(8), random.Random(9)
+    for _ in range(200):
+        phase, x = (round(draw.uniform(-2, 2), 3) for _ in "01")
+        p = round(draw.uniform(-4, 4), 3)
+        claim = claim_of(file_of("P", waves=["1 0 %s %s" % (phase, p)]))
+        most, *others = check.upper_beta(claim, fixed, check.ROOT, (Fraction(x), 0), (0, 0))
+        assert 2 - p * math.sin(x + math.pi * phase) <= most and others == [0, 2]
 
 
 def test_displacements_on_a_torus():
