@@ -15,6 +15,7 @@ import sys
 import termios
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -413,6 +414,28 @@ def test_a_lock_of_another_run_is_left_alone(tmp_path):
         os.unlink(path + ".lock")
         open(path + ".lock", "w").close()       # as if another run had come
     assert os.path.exists(path + ".lock")
+
+
+def test_a_file_is_on_the_disk_before_it_replaces_another(tmp_path, monkeypatch):
+    """Else a power failure after the renaming could leave neither the old text nor the new one."""
+    done, real = [], {name: getattr(os, name) for name in ("fsync", "replace")}
+    for name in real:
+        def call(*arguments, name=name):
+            done.append(name)
+            return real[name](*arguments)
+        monkeypatch.setattr(os, name, call)
+    files.write(tmp_path / "a", b"x")
+    assert done == ["fsync", "replace"]
+
+
+def test_a_text_that_the_disk_takes_in_parts_is_appended_whole(tmp_path):
+    """One call of write may take fewer bytes than it is given."""
+    file = files.AppendedFile(tmp_path / "a", "")
+    stream = file.stream
+    file.stream = SimpleNamespace(write=lambda data: stream.write(data[:2]), close=stream.close)
+    file.append("a text")
+    file.close()
+    assert (tmp_path / "a").read_text() == "a text"
 
 
 @pytest.mark.parametrize("mask, mode", [(0o077, 0o600), (0o022, 0o644)])
