@@ -73,6 +73,9 @@ static int bound_root(void *work, int signs, double *bound, double *l, double *r
     *l = at(&w->l, K);
     if (!holds(&active, K) || to - from >= most)
         return 0;
+    for (int j = from; j <= to && signs == 3; j++)
+        for (int i = 0; i < 2; i++)
+            site_of(w, j)->n[i] *= 0x1p-300;
     bound_second_variation(w, active, signs == 1);
     if (signs == 2)
         disturb(w, active);

@@ -218,7 +218,7 @@ static int bound_orbit(const request *r, int signs, double y[])
 }
 
 /* s, t, signs -> the same.  signs: 1: those of cubic terms count; 2: the sums of bound.c without
-   roundings, with multipliers that are off. */
+   roundings, with multipliers that are off; 3: of vectors that are 2^-300 times as long. */
 static int k_bound(const request *r, double y[]) { return bound_orbit(r, (int)r->more[2], y); }
 
 /* s, t -> of each point of that orbit, at most 13 (11 for any waves, with the reaches along the

@@ -214,6 +214,14 @@ def test_the_bound_holds():
     assert seen > CASES // 80 and proved > seen // 10 and close > seen // 10
 
 
+def test_no_bound_of_vectors_that_underflow():
+    """Underflow is covered where the mass is 1 or more; without that the bound is infinite."""
+    prism = [*map(Fraction, ("1", "1", "0", "1.5", "1.5", *"00000", "1.5", "1.5")), Fraction(0)]
+    assert bounded(prism, -1, 2, 1)[0] < 0
+    with pytest.raises(ArithmeticError):
+        kernels.call("loewner_bound", [*prism, -1, 2, 3], BOUND, 20)
+
+
 def quick_variation(point, star, n, first, l, s, t):
     """second_variation in doubles, a hundred times as fast."""
     a, b, c, *v = point
