@@ -13,7 +13,7 @@ from converse.check.claim import Claim, Wave
 from converse.check.criterion import Criterion
 from converse.check.links import displacement
 from converse.model.map import LINE, MuldoonMap, SymplecticMap
-from converse.prover import native, run, starts, tree
+from converse.prover import links, native, run, starts, tree
 from converse.prover.links import (SPARE, Link, Links, Target, clusters, crests, hull_of,
                                    least_slope, linked_tree, region_around)
 from converse.prover.native import Counts, Stop
@@ -117,6 +117,25 @@ def test_least_slope():
         assert 0 <= l + 1 / l - largest < Fraction(1, 10 ** 6) and l < 1
     with pytest.raises(ValueError):
         least_slope(Fraction("1.9"))
+
+
+@pytest.mark.parametrize("y", ["0.5", "-0.5", "0", "0.2", "0.9", "-1.3"])
+@pytest.mark.parametrize("low, high", [("0.3", "0.4"), ("-0.2", "0.1"), ("-1", "-1")])
+def test_the_most_that_a_wave_adds(y, low, high):
+    """Also about a crest, where the sine has no slope."""
+    for reach in "0", "0.01", "0.3", "2":
+        t = np.linspace(-float(reach), float(reach), 101)
+        sines = np.sin(np.pi * float(y) + t)
+        most = links._most(*map(Fraction, (low, high, y, reach)))
+        assert most >= max((-p * sines).max() for p in (float(low), float(high))) - 1e-15
+
+
+def test_quotients_by_pi_are_rounded_outwards():
+    """The bounds of pi are next to it, and 1 is a multiple of 1/COARSE."""
+    below, above = links.PI
+    step = Fraction(1, links.COARSE)
+    assert links._over_pi(below, above) == (1 - step, 1 + step)
+    assert links._over_pi(-above, -below) == (-1 - step, -1 + step)
 
 
 def test_a_link_holds_for_all_parameters():
