@@ -10,6 +10,7 @@ import functools
 import itertools
 import math
 import operator
+from collections import Counter
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -251,7 +252,7 @@ class Torus:
             raise NotConfirmed(FAR)
         self.farthest = max([length for length, _, _ in sizes], default=1)
         # Of each length the sums of |u_k| and |u_k| |k|.
-        self.sums, self.slopes = [[0] * (self.farthest + 1) for _ in range(2)]
+        self.sums, self.slopes = [0] * (self.farthest + 1), Counter()
         for length, size, width in sizes:
             self.sums[length] += size
             self.slopes[length] += size * width
@@ -262,8 +263,8 @@ class Torus:
 
     def derivative_outside(self, powers, limit):
         """The sum of |u_k| |k|_2 sigma^|k| over |k| > limit."""
-        return rounded_up(Fraction(2 * sum(map(
-            operator.mul, self.slopes[limit + 1:], powers[limit + 1:])),
+        return rounded_up(Fraction(2 * sum([
+            slope * powers[length] for length, slope in self.slopes.items() if length > limit]),
             1 << self.bits + FINE + 32))
 
     def extent(self, powers, spared):
