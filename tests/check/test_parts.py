@@ -437,33 +437,28 @@ def test_displacements_against_derivatives():
         l = criterion.least_pivot(cell) / criterion.fixed.one
         x, w = np.array(claim.xstar, float), np.array(y, float) - np.array(claim.xstar, float)
         inverse = np.linalg.inv(np.reshape(claim.frame, (2, 2)).astype(float))
+        z = x + (np.arange(400)[:, None] + 0.5) / 400 * w
+        beta = np.zeros((400, 2, 2)) + 2 * np.eye(2)
+        for wave in claim.examined:
+            p = float(wave.middle) + sum(float(g) * s for g, s in zip(wave.parts, t))
+            beta -= p * np.sin(z @ wave.k + math.pi * float(wave.phase))[:, None, None] \
+                * np.outer(wave.k, wave.k)
+        D = beta - 2 * l * np.eye(2)
+        values, vectors = np.linalg.eigh(D)
+        if values.min() < 0:
+            continue
+        root = vectors * np.sqrt(values)[:, None] @ vectors.transpose(0, 2, 1)
         for u in (*inverse, *-inverse):
-            total, sites = np.zeros(2), 400
-            for n in range(sites):
-                z = x + (n + 0.5) / sites * w
-                beta = 2 * np.eye(2)
-                for wave in claim.examined:
-                    p = float(wave.middle) + sum(float(g) * s for g, s in zip(wave.parts, t))
-                    beta -= p * math.sin(np.dot(wave.k, z) + math.pi * float(wave.phase)) \
-                        * np.outer(wave.k, wave.k)
-                D = beta - 2 * l * np.eye(2)
-                values, vectors = np.linalg.eigh(D)
-                if values[0] < 0:
-                    break
-                root = vectors * np.sqrt(values) @ vectors.T
-                a, b = root @ u, root @ w
-                a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
-                # The R with |R| <= 1/2 that turns b to a makes u.A w largest.
-                c = (a + b) / np.linalg.norm(a + b)
-                R = np.outer(c, c) - np.eye(2) / 2
-                total += (l * np.eye(2) + D / 2 + root @ R @ root) @ w / sites
-            else:
-                moved = inverse @ total / math.pi
-                for v, (low, high) in zip(moved, bounds):
-                    assert float(low) <= v <= float(high)
-                    where = (v - float(low)) / float(high - low)
-                    near = [max(near[0], where), max(near[1], 1 - where)]
-                cases += 1
+            a, b = [v / np.linalg.norm(v, axis=1)[:, None] for v in (root @ u, root @ w)]
+            # The R with |R| <= 1/2 that turns b to a makes u.A w largest.
+            c = (a + b) / np.linalg.norm(a + b, axis=1)[:, None]
+            R = c[:, :, None] * c[:, None] - np.eye(2) / 2
+            moved = inverse @ ((l * np.eye(2) + D / 2 + root @ R @ root) @ w).mean(0) / math.pi
+            for v, (low, high) in zip(moved, bounds):
+                assert float(low) <= v <= float(high)
+                where = (v - float(low)) / float(high - low)
+                near = [max(near[0], where), max(near[1], 1 - where)]
+            cases += 1
     assert min(near) > 0.99
 
 

@@ -77,6 +77,23 @@ def run(tmp_path, capsys, monkeypatch):
     return run
 
 
+@pytest.fixture(scope="module", autouse=True)
+def looked_once():
+    """The small divisors of a rotation once, where several files have it."""
+    look, found = field.Divisors._look, {}
+
+    def once(self, radius):
+        key = repr((vars(self.field), self.elements, vars(self.norm), self.tail, radius))
+        if key not in found:
+            look(self, radius)
+            found[key] = self.records, self.radius
+        self.records, self.radius = found[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(field.Divisors, "_look", once)
+        yield
+
+
 # ---- what is verified
 
 def test_the_golden_circle_is_verified(run):
