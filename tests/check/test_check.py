@@ -1980,6 +1980,25 @@ def test_roundings_of_each_step_are_counted(np, texts, c, factor):
     assert (rests[0] - rests[1] > 0.95 * factor * push * 100 ** 2 / 2).all()
 
 
+def test_roundings_of_waves_that_move_are_counted(np, texts):
+    """As above, the roundings of what the parameters do to a wave."""
+    text = with_parameters(with_tree(texts["trig278"], "P"), ("1e-9", "1e-9"), ("1e-9", "1e-9"),
+                           ("0", "0"))
+    for name in "v0", "v1":
+        text = with_field(text, name, "1 0")
+    fast, cell = check.Lockstep([claim_of(text)]), np.zeros((5, 1), np.int64)
+    number, rests = np.zeros(1, int), []
+    for counted in (1, 0):
+        prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
+                              np.array([0.9]))
+        moving = prisms.from_H.copy()
+        prisms.from_H *= counted
+        assert all(prisms.follow())
+        rests.append(prisms.sites[100].rest[:2])
+    assert (moving >= 2.0 ** -48 * 1e-9).all()
+    assert (rests[0] - rests[1] > 0.95 * moving * 100 ** 2 / 2).all()
+
+
 def cut_short(monkeypatch, bits):
     """Centres are whole numbers of 2^-bits turns, cut downwards, so that all errors have one sign
     and nothing else hides them; and WHOLE_ERROR is what it is for 64 bits."""
