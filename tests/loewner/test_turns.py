@@ -89,9 +89,7 @@ def test_prisms_with_the_longest_orbits_are_not_cut():
     assert grown.text == "U" and grown.steps == [100]
 
 
-def test_orbits_of_a_proof_are_as_long_as_they_must():
-    """k = 0.9719 needs over 4,000 points, and margins that are as small as they are."""
-    proof = prove(Problem(MuldoonMap("0.9719", 0, 0)), jobs=1)
-    assert proof.no_tori and 4000 < proof.counts.max_NTsteps < 10000
+def test_orbits_where_a_circle_exists_stay_ordinary():
+    """Longer ones, as k = 0.9719 needs (test_numbers.py), are not tried."""
     undecided = prove(Problem(MuldoonMap("0.9", 0, 0)), jobs=1)
     assert not undecided.no_tori and undecided.counts.max_NTsteps <= native.ORDINARY

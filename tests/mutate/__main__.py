@@ -101,7 +101,9 @@ class Place:
 
 def places(where=()):
     """The mutants there."""
+    files = {word.partition(":")[0] for word in where}
     found = [Place(name, path, mutant) for name, path in sources().items()
+             if name in files or not where
              for mutant in mutants(name, path.read_text("utf-8"))]
     if not where:
         return found

@@ -65,7 +65,7 @@ def given(name, together=False):
 def test_the_standard_map():
     head, *table = columns("method.md", "k")
     assert head == ("k", "longest orbit", "prisms", "CPU seconds")
-    for k, points, prisms, _ in table:
+    for k, points, prisms, _ in table[:None if TORTURE > 1 else -1]:     # the last takes longest
         counts = sharper(Problem(MuldoonMap(k, 0, 0)))
         assert (counts.max_NTsteps, counts.proved) == (number(points), number(prisms))
 
