@@ -1999,6 +1999,19 @@ def test_roundings_of_waves_that_move_are_counted(np, texts):
     assert (rests[0] - rests[1] > 0.95 * moving * 100 ** 2 / 2).all()
 
 
+def test_roundings_of_slopes_where_the_lanes_meet_are_counted(np):
+    """Where G is 0, x[1] is off by its columns 3 and 4 and by 1/2, and terms 10 and 20 cancel in
+    G: what these lose is multiplied by all of that."""
+    ends = np.array([[[1.0], [-2.0]], [[4.0], [0.0]]])
+    shape, none = check.Shape([((1, 0), 0)]), np.zeros((2, 3, 1))
+    prisms = types.SimpleNamespace(other=np.zeros_like, rounding=np.full((2, 1), 0.5), shape=shape,
+                                   ends=ends)
+    sums = types.SimpleNamespace(error=np.zeros(1))
+    check.Prisms.add_ends(prisms, sums, none, none, np.array([[10.0], [20.0]]))
+    assert shape.grain >= 64 * check.UNIT
+    assert sums.error >= shape.grain * (10 * (3 + 0.5) + 20 * (4 + 0.5))
+
+
 def cut_short(monkeypatch, bits):
     """Centres are whole numbers of 2^-bits turns, cut downwards, so that all errors have one sign
     and nothing else hides them; and WHOLE_ERROR is what it is for 64 bits."""
