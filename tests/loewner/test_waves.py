@@ -300,6 +300,21 @@ def test_margins():
 
 # ---- regions that move with the parameters
 
+def test_roundings_of_large_shifts_widen_the_sides():
+    """Doubles near shifts of some radians are off by more than the units of 2^-64 turns."""
+    rng, most = rng_for("large shifts"), 0
+    for _ in range(10):
+        patch = draw(rng, KINDS[:1])
+        patch.frame, patch.parameters, patch.half = FRAMES[0], 3, [Fraction(0)] * 2
+        patch.shifts = [[uniform(rng, -6, 6, 30) for _ in range(3)] for _ in range(2)]
+        out = kernels.call("waves_cell", [*arguments(patch), *[0] * 10], 18, 1080)
+        for i in range(2):
+            off = sum(abs(Fraction(x) - y) for x, y in zip(out[4 + 3 * i:], patch.shifts[i]))
+            assert off <= out[2 + i]
+            most = max(most, off)
+    assert most > 2 * UNIT
+
+
 def shifted_cells(rng, cases):
     """Yields how much v of the corners of random cells needs of that by which the core's prisms are
     longer, and that."""
