@@ -237,6 +237,11 @@ Definition may_link (c : claim) (ps : list part) : bool :=
   | _, _ => false
   end.
 
+(* The region that a link may lead into: with its image where that is excluded, too. *)
+Definition reached (c : claim) : region :=
+  if folds (of_region c) (examined c) (of_xstar c) (shifts c) (parameters (of_patch c))
+  then folded (of_region c) else of_region c.
+
 (* How far f moves for parameters in these slices, to each of the later parts, and between which ends
    it is to lead; nothing if the bound or l is wrong. *)
 Definition ways_for (c : claim) (later : list claim) (ts : list slice) (Bl : Q * Q) :
@@ -244,7 +249,7 @@ Definition ways_for (c : claim) (later : list claim) (ts : list slice) (Bl : Q *
   let patch := sliced ts (examined c) in
   if tail_ok (fst Bl) (snd Bl) && patch_below prec patch (fst Bl)
   then map (fun c' => (displacement prec series patch (of_region c) (snd Bl)
-                         (of_xstar c) (of_xstar c'), ends_of (of_region c') (shifts c) (shifts c') ts))
+                         (of_xstar c) (of_xstar c'), ends_of (reached c') (shifts c) (shifts c') ts))
          later
   else [].
 
@@ -366,7 +371,7 @@ Lemma linked_way c h later k leaf : linked_ok c h later k leaf = true -> exists 
   patch_below prec (sliced (skipn 2 leaf) (examined c)) B = true /\
   leads_into prec (displacement prec series (sliced (skipn 2 leaf) (examined c)) (of_region c) l
                      (of_xstar c) (of_xstar c')) (of_region c)
-    (ends_of (of_region c') (shifts c) (shifts c') (skipn 2 leaf)) leaf = true.
+    (ends_of (reached c') (shifts c) (shifts c') (skipn 2 leaf)) leaf = true.
 Proof.
   unfold linked_ok. destruct (find _ _) as [[ts ways] |] eqn:Hfind; [| discriminate].
   apply find_some in Hfind as [Hin Hsame]. apply same_slices_eq in Hsame. cbn [fst] in Hsame.
@@ -416,13 +421,40 @@ Proof.
   apply vec_eq; unfold minus, plus, Criterion.turns; cbn [fst snd]; ring.
 Qed.
 
-(* No graph whose orbit leads from x* to the region, for its parameters: where nothing is shifted
-   this is no_invariant_graph_into (unshifted_graphs). *)
-Definition no_graph_of (c : claim) : Prop := forall t, length t = parameters (of_patch c) ->
+(* No graph whose orbit leads from x* to a region, for the claim's parameters; where it is the claim's
+   and nothing is shifted this is no_invariant_graph_into (unshifted_graphs). *)
+Definition no_graph_to (c : claim) (r : region) : Prop :=
+  forall t, length t = parameters (of_patch c) ->
   in_cube t -> forall k S S', periodic S -> has_gradient S S' ->
   invariant_graph (waves (examined c) t) k S' ->
-  ~ into_shifted (of_region c) (shifts c) t
+  ~ into_shifted r (shifts c) t
       (Link.on_graph (waves (examined c) t) k S' (point (of_xstar c))).
+Definition no_graph_of (c : claim) : Prop := no_graph_to c (of_region c).
+
+Lemma reached_graphs c : no_graph_of c -> no_graph_to c (reached c).
+Proof.
+  unfold reached. destruct (folds _ _ _ _ _) eqn:Hfolds; [| easy].
+  apply folds_correct in Hfolds
+    as (E00 & E01 & E10 & E11 & Hdiagonal & (order & Hn & Ho & H0) & H1 & Hlow & Hhigh).
+  intros H t Ht Cube k S S' HS HS' Hinv (v0 & v1 & i & j & Hv0 & Hv1 & E).
+  cbn [folded centre0 half0 centre1 half1] in Hv0, Hv1. rewrite H1, Q2R_0, Q2R_plus in Hv1.
+  apply Rcomplements.Rabs_le_between in Hv1. set (r := of_region c) in *.
+  assert (Rabs (v1 - Q2R (centre1 r)) <= Q2R (half1 r)
+          \/ Rabs (- v1 - Q2R (centre1 r)) <= Q2R (half1 r)) as [Hin | Hin].
+  { rewrite Q2R_abs in Hv1. unfold Rabs in *.
+    repeat destruct (Rcase_abs _); lra. }
+  - apply (H t Ht Cube k S S' HS HS' Hinv). exists v0, v1, i, j.
+    rewrite H1, Rplus_0_r. now repeat split.
+  - destruct (graph_exchanged _ order t k S S' Ho HS HS' Hinv) as (A & B & C & D).
+    apply (H (reordered 0 order t)) with (4 := B) (5 := C);
+      [unfold reordered; now rewrite map_length | now apply reordered_in_cube | exact A |].
+    assert (Hx : point (of_xstar c) = swap (point (of_xstar c)))
+      by (unfold swap, point; cbn [fst snd]; now rewrite Hdiagonal).
+    rewrite Hx, D, E. exists v0, (- v1), j, i. fold r. rewrite H0, H1, Rplus_0_r.
+    split; [exact Hv0 |]. split; [exact Hin |].
+    unfold swap, plus, at_v, Criterion.turns, folded. cbn [m00 m01 m10 m11].
+    rewrite E00, E01, E10, E11. apply vec_eq; cbn [fst snd]; ring.
+Qed.
 
 Lemma unshifted_graphs c : shifts c = ([], []) -> no_graph_of c -> forall t, in_cube t ->
   no_invariant_graph_into (of_region c) (waves (examined c) t) (point (of_xstar c)).
@@ -488,16 +520,18 @@ Proof.
     destruct (sliced_waves _ _ Hslices) as (s' & Hs' & Es). specialize (Es (examined c)).
     cbn [skipn] in HB', Hlink. destruct (tail_ok_correct _ _ HBl) as (Hl' & HBl').
     assert (Below' := patch_below_correct prec _ _ HB').
-    rewrite Forall_forall in IH, Hlater. specialize (IH ct Hin). specialize (Hlater ct Hin).
+    rewrite Forall_forall in IH, Hlater. specialize (Hlater ct Hin).
+    pose proof (reached_graphs _ (IH ct Hin)) as Here.
     destruct ct as [c' tr]. cbn [fst] in *. destruct Hlater as (P & A & F00 & F01 & F10 & F11).
     assert (Ex' : examined c' = examined c) by (rewrite Eex; unfold examined; now rewrite P, A).
-    unfold no_graph_of in IH. rewrite P, <- Epatch, Ex' in IH.
-    apply (IH s Hm' Hs k' T T' HT HT' Hinv').
+    unfold no_graph_to in Here. rewrite P, <- Epatch, Ex' in Here.
+    apply (Here s Hm' Hs k' T T' HT HT' Hinv').
     rewrite <- Es in Hinv', E |- *.
     pose proof (displacement_ok prec series (make_constants_ok prec) (sliced slices (examined c)) r l _
       (of_xstar c) (of_xstar c') s' k' T T' Hr Hl' HBl' (Below' s' Hs') Hs' HT HT' Hinv') as D.
     refine (leads_into_ok prec _ r _ sh _ (s0 :: s1 :: slices) a b s _ _ p q Hr _ _ _ _ Hh0 Hh1
-              Hlink Hu E D); congruence.
+              Hlink Hu E D);
+      unfold reached; destruct (folds _ _ _ _ _); cbn [folded m00 m01 m10 m11]; congruence.
   - cbn. now rewrite Hn.
   - constructor; [assumption |]. now constructor.
   - apply (excluded_graph c u0 u1 ts k S S' i j Hex Ht' HS HS' Hinv). rewrite Hx1. f_equal.

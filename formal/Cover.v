@@ -107,18 +107,21 @@ Proof.
     rewrite <- E, <- Hx. f_equal. f_equal. ring.
 Qed.
 
-Lemma on_graph_exchanged patch order t x : symmetric patch order = true -> on_graph patch t x ->
-  on_graph patch (reordered 0 order t) (fun j => swap (x j)).
+(* The image of a graph with the angles exchanged is one for the parameters in the other order. *)
+Lemma graph_exchanged patch order t c S S' : symmetric patch order = true ->
+  periodic S -> has_gradient S S' -> invariant_graph (waves patch t) c S' ->
+  let ws' := waves patch (reordered 0 order t) in let T' y := swap (S' (swap y)) in
+  periodic (fun y => S (swap y)) /\ has_gradient (fun y => S (swap y)) T' /\
+  invariant_graph ws' (swap c) T' /\
+  forall y, Link.on_graph ws' (swap c) T' (swap y) = swap (Link.on_graph (waves patch t) c S' y).
 Proof.
-  intros Ho (c & S & S' & HS & HS' & Hinv & Hx).
-  set (ws := waves patch t) in *. set (ws' := waves patch (reordered 0 order t)).
+  intros Ho HS HS' Hinv ws' T'. set (ws := waves patch t) in *.
   assert (HV : forall y, V' ws' (swap y) = swap (V' ws y)).
   { intros y. rewrite <- V'_swap. symmetry. apply (symmetric_correct _ _ Ho t _ y). }
   assert (HF : forall y p, F ws' (swap y, swap p)
                            = (swap (fst (F ws (y, p))), swap (snd (F ws (y, p))))).
   { intros y p. unfold F. cbn [fst snd]. now rewrite HV. }
-  exists (swap c), (fun y => S (swap y)), (fun y => swap (S' (swap y))).
-  split; [| split; [| split]].
+  unfold T'. split; [| split; [| split]].
   - intros y m0 m1. exact (HS (swap y) m1 m0).
   - destruct HS' as (E0 & E1 & G0 & G1). repeat split.
     + intros y. exact (E1 (swap y)).
@@ -128,9 +131,17 @@ Proof.
   - intros y. rewrite <- (swap_swap y) at 1 3.
     change (plus (swap c) (swap (S' (swap y)))) with (swap (plus c (S' (swap y)))).
     rewrite HF. cbn [fst snd]. rewrite swap_swap. now rewrite (Hinv (swap y)).
-  - intros k. unfold Link.on_graph. rewrite swap_swap.
-    change (plus (swap c) (swap (S' (x k)))) with (swap (plus c (S' (x k)))).
-    rewrite HF. cbn [fst]. now rewrite Hx.
+  - intros y. unfold Link.on_graph. rewrite swap_swap.
+    change (plus (swap c) (swap (S' y))) with (swap (plus c (S' y))). now rewrite HF.
+Qed.
+
+Lemma on_graph_exchanged patch order t x : symmetric patch order = true -> on_graph patch t x ->
+  on_graph patch (reordered 0 order t) (fun j => swap (x j)).
+Proof.
+  intros Ho (c & S & S' & HS & HS' & Hinv & Hx).
+  destruct (graph_exchanged patch order t c S S' Ho HS HS' Hinv) as (A & B & C & D).
+  eexists _, _, _. split; [exact A |]. split; [exact B |]. split; [exact C |].
+  intros k. rewrite D. now rewrite Hx.
 Qed.
 
 Lemma on_graph_kind patch : kind patch (on_graph patch).
@@ -358,11 +369,24 @@ Definition direct0 (r : region) : bool :=
 
 Definition direct1 (r : region) : bool := Qle_bool 1 (half1 r * inject_Z (divisor r)).
 
-(* n is the number of parameters. *)
-Definition exchanges (r : region) (patch : list term) (xstar : Q * Q) (n : nat) : bool :=
+(* May a region with these shifts stand for its image, too, in which v1 has the other sign?  n is the
+   number of parameters. *)
+Definition folds (r : region) (patch : list term) (xstar : Q * Q) (s : list Q * list Q) (n : nat) :
+    bool :=
   (m00 r =? 1)%Z && (m01 r =? 1)%Z && (m10 r =? 1)%Z && (m11 r =? -1)%Z
-  && Qeq_bool (fst xstar) (snd xstar) && existsb (symmetric patch) (permutations n)
-  && Qle_bool (centre1 r - half1 r) 0 && Qle_bool 1 (centre1 r + half1 r).
+  && Qeq_bool (fst xstar) (snd xstar)
+  && existsb (fun order => symmetric patch order && (length (fst s) <=? length order)%nat
+                && forallb (fun q => Qeq_bool q 0) (added (-1) (fst s) (reordered 0%Q order (fst s))))
+             (permutations n)
+  && forallb (fun q => Qeq_bool q 0) (snd s)
+  && Qle_bool (centre1 r - half1 r) 0 && Qle_bool 0 (centre1 r + half1 r).
+
+Definition exchanges (r : region) (patch : list term) (xstar : Q * Q) (n : nat) : bool :=
+  folds r patch xstar ([], []) n && Qle_bool 1 (centre1 r + half1 r).
+
+(* The region and its image together. *)
+Definition folded (r : region) : region :=
+  Region (m00 r) (m01 r) (m10 r) (m11 r) (centre0 r) (half0 r) 0 (Qabs.Qabs (centre1 r) + half1 r).
 
 Lemma Q2R_0 : Q2R 0 = 0.
 Proof. unfold Q2R; cbn; lra. Qed.
@@ -378,16 +402,42 @@ Proof.
   unfold Rdiv. rewrite Rmult_assoc, Rinv_l; lra.
 Qed.
 
+Lemma permutations_length n order : In order (permutations n) -> length order = n.
+Proof.
+  destruct n as [| [| [| [| n]]]]; cbn [permutations In]; intros H;
+    repeat (destruct H as [<- | H]; [reflexivity |]); destruct H.
+Qed.
+
+Lemma folds_correct r patch xstar s n : folds r patch xstar s n = true ->
+  m00 r = 1%Z /\ m01 r = 1%Z /\ m10 r = 1%Z /\ m11 r = (-1)%Z /\
+  Q2R (fst xstar) = Q2R (snd xstar) /\
+  (exists order, length order = n /\ symmetric patch order = true /\
+   forall t, combined (fst s) (reordered 0 order t) = combined (fst s) t) /\
+  (forall t, combined (snd s) t = 0) /\ - Q2R (half1 r) <= Q2R (centre1 r) <= Q2R (half1 r).
+Proof.
+  unfold folds. rewrite !andb_true_iff, !Z.eqb_eq.
+  intros ((((((((H00 & H01) & H10) & H11) & Hs) & Ho) & H1) & Hlow) & Hhigh).
+  apply Qle_bool_iff, Qle_Rle in Hlow, Hhigh. rewrite Q2R_minus, Q2R_0 in Hlow.
+  rewrite Q2R_plus, Q2R_0 in Hhigh. repeat split; try assumption; try lra.
+  - now apply Qeq_eqR, Qeq_bool_eq.
+  - apply existsb_exists in Ho as (order & Hin & H). rewrite !andb_true_iff in H.
+    destruct H as ((Hsym & Hlength) & H0). exists order.
+    split; [now apply permutations_length |]. split; [exact Hsym |]. intros t.
+    apply combined_zero with (t := reordered 0 order t) in H0. rewrite combined_added in H0.
+    rewrite <- (combined_reordered order (fst s) t); [replace (Q2R (-1)) with (-1) in H0 by
+      (unfold Q2R; cbn; lra); lra | | now apply Nat.leb_le].
+    unfold symmetric in Hsym. apply andb_prop in Hsym as [Hsym _]. apply andb_prop in Hsym as [Hsym _].
+    now apply order_correct.
+  - intros t. now apply combined_zero.
+Qed.
+
 Lemma exchanges_correct r patch xstar n : exchanges r patch xstar n = true ->
   exchangeable r patch xstar.
 Proof.
-  unfold exchanges. rewrite !andb_true_iff, !Z.eqb_eq.
-  intros (((((((H00 & H01) & H10) & H11) & Hs) & Ho) & Hlow) & Hhigh).
-  apply Qle_bool_iff, Qle_Rle in Hlow, Hhigh. rewrite Q2R_minus, Q2R_0 in Hlow.
-  rewrite Q2R_plus, Q2R_1 in Hhigh. repeat split; try assumption.
-  - now apply Qeq_eqR, Qeq_bool_eq.
-  - apply existsb_exists in Ho as (order & _ & H). now exists order.
-  - intros v1 Hv1. apply Rabs_le. lra.
+  intros H. apply andb_prop in H as [H Hhigh].
+  apply folds_correct in H as (H00 & H01 & H10 & H11 & Hs & (order & _ & Ho & _) & _ & _ & Hlow).
+  apply Qle_bool_iff, Qle_Rle in Hhigh. rewrite Q2R_plus, Q2R_1 in Hhigh.
+  repeat split; try assumption; [now exists order |]. intros v1 Hv1. apply Rabs_le. lra.
 Qed.
 
 Lemma all1_correct r patch xstar n : direct1 r || exchanges r patch xstar n = true ->

@@ -4,8 +4,7 @@ import math
 from fractions import Fraction
 
 from .arith import SINE_ERROR, fixed_of
-from .claim import DIAGONALS
-from .tree import exchange_orders
+from .tree import folds
 
 CENTRE_BITS = 256                       # of the centre of the reversal
 
@@ -47,7 +46,7 @@ def symmetries_used(claim):
     period0, period1 = Fraction(2 * common, abs(f00 * f11 - f01 * f10)), Fraction(2, common)
     (low0, high0), (low1, high1) = [(c - h, c + h) for c, h in zip(claim.centre, claim.half)]
     if high1 - low1 < period1:
-        if low1 > 0 or high1 < 1 or claim.frame != DIAGONALS or not exchange_orders(claim):
+        if high1 < 1 or not folds(claim):
             return None
         used = ["exchange of the angles"]
     if high0 - low0 < period0:

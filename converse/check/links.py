@@ -1,4 +1,4 @@
-"""Leaves that are linked to another part: steps (C25), (C26)."""
+"""Leaves that are linked to another part: steps (C25), (C26), (C28)."""
 
 import math
 from dataclasses import replace
@@ -7,7 +7,7 @@ from fractions import Fraction
 from .arith import SINE_ERROR, upper_sqrt
 from .claim import LETTERS
 from .failures import NotConfirmed
-from .tree import leaf_text, leaves, trees
+from .tree import folds, leaf_text, leaves, trees
 
 PIECES = 16                             # of the segment from one x* to the other
 
@@ -61,12 +61,17 @@ def check_links(claim, criterion):
     """NotConfirmed, if a leaf that is linked to a part may have successors outside of the part's
     region."""
     known = {}                          # displacements
+    targets = dict(zip(LETTERS, claim.parts))
+    for letter, part in targets.items():
+        if folds(part):                 # with its mirror image: step (C28)
+            (c0, c1), (h0, h1) = part.centre, part.half
+            targets[letter] = replace(part, centre=(c0, 0), half=(h0, abs(c1) + h1))
     for part, letters in trees(claim):
         for position, cell in leaves(part.tree, kinds="PS" + letters):
             letter = part.tree[position]
             if letter not in letters:
                 continue
-            target = claim.parts[LETTERS.index(letter)]
+            target = targets[letter]
             key = part.where, letter, *[x[2:] for x in cell]
             if key not in known:
                 try:

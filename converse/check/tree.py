@@ -8,7 +8,7 @@ region exactly.
 import itertools
 from array import array
 
-from .claim import AXES, IDENTITY, LETTERS
+from .claim import AXES, DIAGONALS, IDENTITY, LETTERS
 from .failures import NotConfirmed, Rejected, named
 from .limits import MAX_CUTS
 
@@ -113,12 +113,20 @@ def coefficients(waves, swap=False, order=None):
 
 def exchange_orders(claim):
     """The orders of the parameters in which the potential with its coordinates exchanged, t'[m] =
-    t[order[m]], is the potential; none, if x* is not its own image or a coordinate is alone."""
+    t[order[m]], is the potential, and the shifts are the same; none, if x* is not its own image or
+    a coordinate is alone."""
     if claim.xstar[0] != claim.xstar[1] or claim.alone is not None:
         return []
     # V(sigma y; t) = V(y; t'):  the part of t[order[m]] is, exchanged, that of t'[m].
     return [order for order in itertools.permutations(range(claim.parameters))
-            if coefficients(claim.waves, True, order) == coefficients(claim.waves)]
+            if coefficients(claim.waves, True, order) == coefficients(claim.waves)
+            and all(s == claim.shifts[m] for s, m in zip(claim.shifts, order))]
+
+
+def folds(claim):
+    """Is the region proved with its mirror image, in which v1 has the other sign: step (C28)?"""
+    return (claim.frame == DIAGONALS and abs(claim.centre[1]) <= claim.half[1]
+            and not any(s1 for _, s1 in claim.shifts) and exchange_orders(claim) != [])
 
 
 class Mirror:

@@ -36,8 +36,7 @@ def symmetries_used(problem: Problem, xstar: Optional[Point]) -> Optional[List[s
     (low0, high0), (low1, high1) = problem.v0, problem.v1
     used = []
     if high1 - low1 < period1:
-        if low1 > 0 or high1 < 1 or problem.frame != DIAGONALS or xstar is None or \
-                not exchangeable(problem, xstar):
+        if high1 < 1 or xstar is None or not folds(problem, xstar):
             return None
         used = [EXCHANGE]
     if high0 - low0 < period0:
@@ -51,15 +50,37 @@ def symmetries_used(problem: Problem, xstar: Optional[Point]) -> Optional[List[s
 
 
 def exchangeable(problem: Problem, xstar: Point) -> bool:
-    """Does the exchange of the angles leave x* alone, and the patch, with its parameters in some
-    order?"""
+    """Does the exchange of the angles leave x* alone, and the patch and the shifts, with the
+    parameters in some order?"""
     if Fraction(xstar[0]) != Fraction(xstar[1]) or problem.factor is not None:
         return False
     waves = list(zip(problem.waves, problem.amplitude, *problem.parts))
     here = _sums(waves)
     return any(_sums([((k1, k0, phase), p, *(parts[m] for m in order))
                       for (k0, k1, phase), p, *parts in waves]) == here
+               and all(s == problem.shifts[m] for s, m in zip(problem.shifts, order))
                for order in itertools.permutations(range(len(problem.parts))))
+
+
+def folds(problem: Problem, xstar: Point) -> bool:
+    """Is the region proved together with its mirror image, in which v1 has the other sign?"""
+    return problem.frame == DIAGONALS and problem.v1[0] <= 0 <= problem.v1[1] and \
+        not any(s1 for _, s1 in problem.shifts) and exchangeable(problem, xstar)
+
+
+def with_image(problem: Problem, xstar: Point) -> Tuple[Ends, Ends]:
+    """The region that links to a part may lead into, with its mirror image if that is proved."""
+    if not folds(problem, xstar):
+        return problem.v0, problem.v1
+    most = max(map(abs, problem.v1))
+    return problem.v0, (-most, most)
+
+
+def halved(problem: Problem, xstar: Point) -> Problem:
+    """The part of the problem that is to be proved: of a region that may be folded, the half."""
+    if not folds(problem, xstar) or problem.v1[0] == 0:
+        return problem
+    return replace(problem, v1=(Fraction(0), max(map(abs, problem.v1))))
 
 
 def skips(problem: Problem, xstar: Point) -> bool:

@@ -14,6 +14,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from ..model.exact import Ends, pi_bounds, root_bounds, sine_bounds
 from ..model.map import SymplecticMap
 from ..model.problem import Problem, Shifts, inverse
+from ..model.region import with_image
 from . import tree
 from .proof import Tree
 
@@ -187,7 +188,7 @@ class Target:
 
     letter: str
     links: Links
-    region: Box                         # in the middle of the parameters
+    region: Box                         # in the middle of the parameters, with its mirror image
     shifts: Shifts = ()
 
 
@@ -292,7 +293,7 @@ def wrong_letter(problem: Problem, largest: Fraction, xstar: Tuple[str, str], te
             assert part.xstar is not None
             at = part.problem
             targets[letter] = Target(letter, Links(problem, largest, xstar, part.xstar),
-                                     (at.v0, at.v1), at.shifts)
+                                     with_image(at, part.xstar), at.shifts)
     boxes = {target.shifts: _boxes(problem, target.shifts) for target in targets.values()}
     return next((kind for kind, cell in tree.cells(text if targets else "") if kind in targets
                  and not targets[kind].links.of(cell).leads_into(

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from ..model.exact import short_text
 from ..model.problem import IDENTITY, frame_text
+from ..model.region import folds
 from ..model.statement import (TORUS, conditions, ended, indented, labelled, map_lines, one_angle,
                                parameters, whole)
 from . import report_1989, tree
@@ -136,8 +137,9 @@ def _grounds(proof, file):
         _many(counts.most_cuts, "time"), _many(counts.max_NTsteps, "point"),
         _many(counts.tries, "try", "tries"))
     for letter, part in zip(tree.LETTERS, proof.parts):
-        yield "Part " + letter, "x* = %s, %s: %s proved, %s linked" % (
+        yield "Part " + letter, "x* = %s, %s%s: %s proved, %s linked" % (
             _star(problem, part.xstar), _region(part.problem),
+            " and its mirror image" if folds(part.problem, part.xstar) else "",
             _many(part.text.count("P"), "prism"), _count(tree.count_linked(part.text)))
     if proof.parts:
         yield "Links", "an invariant torus that leads from its x* into a linked prism leads from " \

@@ -14,6 +14,7 @@ from typing import List, Tuple
 
 from ..model.exact import decimal_text
 from ..model.map import SymplecticMap
+from ..model.region import halved, with_image
 from . import native, tree
 from .links import (Link, Links, Target, clusters, crests, hull_of, linked_tree, region_around,
                     region_of)
@@ -70,9 +71,10 @@ def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
             return None
         if best is not None and (_text(best) != xstar or shifts):
             links = Links(problem, largest, xstar, _text(best))
-            region = region_of(problem, cells, links, shifts)
-            targets.append(Target(tree.LETTERS[before + len(parts)], links, region, shifts))
-            parts.append(Tree(problem.part(region, shifts), _text(best)))
+            part = _part(problem, region_of(problem, cells, links, shifts), _text(best), shifts)
+            targets.append(Target(tree.LETTERS[before + len(parts)], links,
+                                  with_image(part, _text(best)), shifts))
+            parts.append(Tree(part, _text(best)))
             points += [best] if best not in points else []
     text, steps = linked_tree(problem, grown.text, grown.steps, targets)
     used = [target.letter in text for target in targets]    # one region may do for two clusters
@@ -151,7 +153,8 @@ class _Image:
 
     def region(self, point):
         link = Link.between(self.weakest, self.largest, self.xstar, _text(point))
-        return region_around(self.box, link)
+        part = _part(self.problem, region_around(self.box, link), _text(point))
+        return part.v0, part.v1
 
     def grow(self, points, settings, most):
         """The trees over the points, of `most` leaves each; [] if time was up."""
@@ -235,6 +238,13 @@ def _candidates(look, known, start, ways):
 
 def _moved(point, step, way):
     return tuple(round(a + step * b, 6) for a, b in zip(point, way))
+
+
+def _part(problem, region, xstar, shifts=()):
+    """The region of the problem over x*, or half of it if its mirror image is the other half.
+    Regions that move are not halved, as they move along v1, too."""
+    part = problem.part(region, shifts)
+    return part if _has_width(problem) else halved(part, xstar)
 
 
 def _has_width(problem):

@@ -40,6 +40,7 @@ pending: 0
 """
 SYMMETRIC = ["1 0 0 0.2242872", "0 1 0 0.2242872", "1 1 0 0.4485744"]       # epsilon = 0.02
 XSTAR, OTHER = "0.858 0.858", "0.875 0.875"
+ASIDE = "0.875 0.8751"                  # where no part stands for its mirror image
 DIAGONALS = "1 1 1 -1"
 HALF = "0.5362 0.2502", "0.5 0.5"       # of the torus by reversal and exchange: c0 = 0.28612..
 
@@ -500,6 +501,75 @@ def test_displacements_on_a_torus():
         assert low < (there[j] - there[i]) / math.pi < high
 
 
+# ---- parts that stand for their mirror images
+
+def folded_link(shifts=("", ""), part_v1="%s %s", most=1, **more):
+    """The arguments of a file with a link into a region of which the part proves only v1 >= 0.
+
+    shifts: of v0 and v1; most: how much of the range of v1 the part has."""
+    base = {"xstar": XSTAR, **more}
+    there = base.pop("there", OTHER)
+    tree = found(**base)
+    claim = claim_of(file_of("P", **base))
+    at, cell = max(((at, cell) for at, cell in check.leaves(tree) if cell[0][1] == 0),
+                   key=lambda leaf: sum(leaf[1][1]))
+    moved = check.displacement(check.Criterion(claim), cell, claim.xstar,
+                               tuple(map(Fraction, there.split())))
+    v0, v1 = region_of(claim, cell, moved, Fraction(1, 1000))
+    centre, half = map(Fraction, v1.split())
+    assert centre - half < 0 < centre
+    v0, v1 = v0 + shifts[0], part_v1 % ((decimal((centre + half) * most / 2),) * 2) + shifts[1]
+    part = there, v0, v1, found(" ".join(v0.split()[:2]), " ".join(v1.split()[:2]),
+                                **{**base, "xstar": there})
+    return {"tree": tree[:at] + "a" + tree[at + 1:], **base, "parts": [part]}
+
+
+def wide(*parts):
+    return [wave + part for wave, part in zip(SYMMETRIC, parts)]
+
+
+ALIKE = wide(" 1e-9", " 1e-9", " 0")                            # one parameter
+APART_ALIKE = wide(" 1e-9 0", " 0 1e-9", " 0 0")                # two, which the exchange exchanges
+APART_TURNED = wide(" 1e-9 0 0", " 0 1e-9 0", " 0 0 1e-9")      # the third stays
+FOLDS = {
+    "one value": {},
+    "a parameter": {"waves": ALIKE},
+    "a parameter that moves v0": {"waves": ALIKE, "shifts": (" 1e-6", " 0")},
+    "two parameters": {"waves": APART_ALIKE},
+    "two parameters that move v0 alike": {"waves": APART_ALIKE, "shifts": (" 1e-6 1e-6", " 0 0")},
+    "three, one of them as it likes": {"waves": APART_TURNED,
+                                       "shifts": (" 1e-6 1e-6 -1e-5", " 0 0 0")},
+}
+FOLDS_NOT = {
+    "x* off the diagonal": {"there": "0.875 0.875000001"},
+    "x* off the diagonal by 1e-30": {"there": "0.875 0.875000000000000000000000000001"},
+    "waves not symmetric": {"waves": [SYMMETRIC[0], "0 1 0 0.2242873", SYMMETRIC[2]]},
+    "phases not symmetric": {"waves": [SYMMETRIC[0], "0 1 1e-9 0.2242872", SYMMETRIC[2]]},
+    "a parameter of one wave": {"waves": wide(" 1e-9", " 0", " 0")},
+    "parameters that no exchange maps": {"waves": wide(" 1e-9 0", " 0 2e-9", " 0 0")},
+    "v1 that moves": {"waves": ALIKE, "shifts": (" 0", " 1e-12")},
+    "v0 that moves by one of two": {"waves": APART_ALIKE, "shifts": (" 1e-6 0", " 0 0")},
+    "v0 that two move apart": {"waves": APART_ALIKE, "shifts": (" 1e-6 -1e-6", " 0 0")},
+    "v0 that another order would leave": {"waves": APART_TURNED,
+                                          "shifts": (" 1e-6 0 1e-6", " 0 0 0")},
+    "another frame": {"frame": "1 0 0 1", "there": "0.85 0.85"},
+    "v1 that begins above 0": {"part_v1": "%s1 %s"},
+    "v1 that ends too early": {"most": Fraction(9, 10)},
+}
+
+
+@pytest.mark.parametrize("name", FOLDS)
+def test_a_part_stands_for_its_mirror_image(run, name):
+    """Where the exchange of the angles maps its x*, V and its region to themselves."""
+    assert run(file_of(**folded_link(**FOLDS[name])))[0] in (0, 3)
+
+
+@pytest.mark.parametrize("name", FOLDS_NOT)
+def test_a_part_does_not_stand_for_its_mirror_image(run, name):
+    status, out, err = run(file_of(**folded_link(**FOLDS_NOT[name])))
+    assert (status, out) == (5, "") and "is linked to part a, but may lead out of" in err
+
+
 # ---- wrong files: what is changed, and what the checker says
 
 def with_line(text, name, value, number=0):
@@ -642,7 +712,7 @@ TIGHT = Fraction(1, 10 ** 39)           # the margin of a region, which is given
 @pytest.fixture(scope="module")
 def tight(tree):
     """A link to a region that is hardly larger than it must be."""
-    return linked(tree, margin=TIGHT)
+    return linked(tree, (ASIDE,), margin=TIGHT)
 
 
 def moved(text, n, by):
@@ -657,7 +727,7 @@ STICKS_OUT = {
             name: shorter(f["parts"][0][1 + (name == "v1")], end, Fraction(by))}))
        for name in ("v0", "v1") for end in (-1, 1) for by in ("1e-30", "1e-4")},
     **{"x*%d of the part moved by %s" % (n, by): (
-        lambda f, n=n, by=by: with_part(f, 0, xstar=moved(OTHER, n, by)))
+        lambda f, n=n, by=by: with_part(f, 0, xstar=moved(ASIDE, n, by)))
        for n in (0, 1) for by in ("1e-20", "-1e-20", "0.01", "-0.01")},
     **{"x*%d of part 0 moved by %s" % (n, by): (
         lambda f, n=n, by=by: {**f, "xstar": moved(XSTAR, n, by)})

@@ -12,6 +12,7 @@ from converse import ConverseError, Problem, Proof, Settings, check, prove, read
 from converse.check.claim import Claim, Wave
 from converse.check.criterion import Criterion
 from converse.check.links import displacement
+from converse.model import region
 from converse.model.map import LINE, MuldoonMap, SymplecticMap
 from converse.prover import links, native, run, starts, tree
 from converse.prover.links import (SPARE, Link, Links, Target, clusters, crests, hull_of,
@@ -483,6 +484,34 @@ def test_regions_of_parts(linked):
     problem = part.problem
     assert isinstance(part, Tree) and problem.frame == linked.problem.frame == DIAGONAL
     assert problem == linked.problem.part((problem.v0, problem.v1))
+
+
+def test_a_part_over_the_diagonal_is_half_of_its_region():
+    """The half and its mirror image hold the region; links may lead into both."""
+    problem = replace(line("0.015"), axes=DIAGONAL)
+    for v1, half in (("-0.1", "0.2"), "0.2"), (("-0.3", "0.2"), "0.3"), ((0, "0.2"), "0.2"):
+        part = region.halved(replace(problem, v1=v1), ("0.85", "0.85"))
+        assert part.v1 == (0, Fraction(half)) and part.v0 == problem.v0
+        assert region.with_image(part, ("0.85", "0.85")) == (
+            problem.v0, (-Fraction(half), Fraction(half)))
+    moving = replace(line("0.015", "0.016"), axes=DIAGONAL, v1=("-0.1", "0.2"))
+    for good, changes, xstar in (
+            (False, {}, ("0.85", "0.851")), (False, {"v1": ("0.01", "0.2")}, ("0.85", "0.85")),
+            (False, {"axes": (1, -1, 1, 1)}, ("0.85", "0.85")),
+            (True, {"shifts": [("0.1", "0")]}, ("0.85", "0.85")),
+            (False, {"shifts": [("0.1", "0.01")]}, ("0.85", "0.85"))):
+        part = replace(moving, **changes)
+        assert region.folds(part, xstar) == good
+        assert (region.halved(part, xstar) == part) == (not good)
+        assert (region.with_image(part, xstar) == (part.v0, part.v1)) == (not good)
+
+
+def test_shifts_that_the_exchange_changes():
+    """Each parameter with its own wave: they must move the region alike."""
+    problem = Problem(MuldoonMap(("0.30", "0.31"), ("0.30", "0.31"), "0.6"), axes=DIAGONAL)
+    for second, good in ("0.1", True), ("0.2", False), ("-0.1", False):
+        part = replace(problem, shifts=[("0.1", 0), (second, 0), (0, 0)][:len(problem.parts)])
+        assert region.folds(part, ("0.85", "0.85")) == good
 
 
 def test_the_linked_input(root):
