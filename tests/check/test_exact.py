@@ -9,7 +9,7 @@ import types
 
 import pytest
 
-from converse.check import arith, exact
+from converse.check import arith, exact, torus
 
 E = [*itertools.product((-1, 1), repeat=2), (0.6, -0.3)]   # where symbols are tried
 
@@ -432,3 +432,12 @@ def test_an_attempt_adds_the_sites_of_its_vectors(bound):
     one = 1 << exact.VECTOR_BITS
     ahead, back = [(0, 0), (one // 2, one)], [(2 * one, 0)]
     assert added == [("ab", ahead), ("x", back), ([ahead, back], None, None)]
+
+
+def test_the_bound_of_a_cell_with_few_bits():
+    """With 10 bits the errors of sines, times an amplitude of 50, are in the bound."""
+    fixed, draw = arith.fixed_of(10), random.Random(10)
+    for _ in range(200):
+        y = draw.randrange(-3 * fixed.one, 3 * fixed.one)
+        bound, value = torus.cell_bound(fixed, [(1, 0, 0)], [50 * fixed.one], [(1, 0)], (y, 0), 0)
+        assert min(bound, value) >= (2 - 50 * math.sin(y / fixed.one)) * fixed.one
