@@ -14,7 +14,6 @@ from .torus import is_at_once, torus_bound
 from .tree import changed, trees
 
 BOUND_BITS = 256        # of the bound B; the thousands of bits of narrow cells do not improve it
-LEAST_BITS = 20         # B must be above 2 + 2^-20: nearer to 2 a check would be without end
 
 
 class Criterion:
@@ -51,9 +50,9 @@ class Criterion:
                      for ends in set(apart)}
             self.B_at = [found[ends] for ends in apart]
         self.B = max(self.B_at)
-        if self.B <= 2 * one + (one >> LEAST_BITS):
+        if self.B <= 2 * one:
             # The tails of step (C2) must be square-summable, l < 1, which needs B > 2.
-            raise NotConfirmed("beta has no eigenvalue above 2 + 2^-20: nothing is examined")
+            raise NotConfirmed("beta has no eigenvalue above 2: the criterion does not apply")
         self.l_of = {}                      # by the cell's slices of the parameters
         self.fast = None                    # a Lockstep, where there is one
 

@@ -139,7 +139,7 @@ def _grounds(proof, file):
     for letter, part in zip(tree.LETTERS, proof.parts):
         yield "Part " + letter, "x* = %s, %s%s: %s proved, %s linked" % (
             _star(problem, part.xstar), _region(part.problem),
-            " and its mirror image" if folds(part.problem, part.xstar) else "",
+            ", with its mirror image" if folds(part.problem, part.xstar) else "",
             _many(part.text.count("P"), "prism"), _count(tree.count_linked(part.text)))
     if proof.parts:
         yield "Links", "an invariant torus that leads from its x* into a linked prism leads from " \

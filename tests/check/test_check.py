@@ -598,16 +598,6 @@ def test_widened_and_moved_where_orbits_are_needed(deep, run):
     assert "not excluded" in run(sealed(deep))[2]
 
 
-@pytest.mark.parametrize("value", ["0 0", "1e-300 0", "0 1e-7"])
-def test_a_map_almost_without_waves(texts, run, value):
-    """No orbit is followed where the largest eigenvalue is 2 or hardly more."""
-    text = texts["trig278"]
-    for name in "abc":
-        text = with_field(text, name, value)
-    status, out, err = run(sealed(text))
-    assert (status, out) == (5, "") and "no eigenvalue above 2 + 2^-20" in err
-
-
 def test_header_lines(texts, run):
     """Each field once, in any order, and the seconds may be missing, as may be comments."""
     text = texts["trig278"]
