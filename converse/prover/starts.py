@@ -242,7 +242,7 @@ def _moved(point, step, way):
 
 def _part(problem, region, xstar, shifts=()):
     """The region of the problem over x*, or half of it if its mirror image is the other half.
-    Regions that move are not halved, as they move along v1, too."""
+    Regions that move are not halved, as they also move along v1."""
     part = problem.part(region, shifts)
     return part if _has_width(problem) else halved(part, xstar)
 

@@ -48,6 +48,12 @@ def test_a_point_off_the_diagonal():
 
 
 @dear
+def test_the_least_single_value_of_the_line_in_the_list():
+    assert [sharper(chart.on_line("0.0139", together=True)).proved] == said(
+        "method.md", "0.0139 alone takes ([0-9,]+) prisms")
+
+
+@dear
 def test_the_longest_orbits_of_the_standard_map():
     counts = sharper(Problem(MuldoonMap("0.9717", 0, 0)))
     assert [counts.proved, counts.max_NTsteps] == said(
