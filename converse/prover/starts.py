@@ -14,7 +14,7 @@ from typing import List, Tuple
 
 from ..model.exact import decimal_text
 from ..model.map import SymplecticMap
-from ..model.region import halved, with_image
+from ..model.region import folds, halved, with_image
 from . import native, tree
 from .links import (Link, Links, Target, clusters, crests, hull_of, linked_tree, region_around,
                     region_of)
@@ -71,7 +71,8 @@ def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
             return None
         if best is not None and (_text(best) != xstar or shifts):
             links = Links(problem, largest, xstar, _text(best))
-            part = _part(problem, region_of(problem, cells, links, shifts), _text(best), shifts)
+            region = region_of(problem, cells, links, shifts)
+            part = halved(problem.part(region, shifts), _text(best))
             targets.append(Target(tree.LETTERS[before + len(parts)], links,
                                   with_image(part, _text(best)), shifts))
             parts.append(Tree(part, _text(best)))
@@ -151,16 +152,18 @@ class _Image:
         self.largest, self.box = min(largest, *crests(self.weakest)), hull_of(problem, cells)
         self.survey = survey
 
-    def region(self, point):
+    def part(self, point):
+        """The problem over the point: in half of the region, if the mirror image of the half is the
+        other half."""
         link = Link.between(self.weakest, self.largest, self.xstar, _text(point))
-        part = _part(self.problem, region_around(self.box, link), _text(point))
-        return part.v0, part.v1
+        return halved(self.problem.part(region_around(self.box, link)), _text(point))
 
     def grow(self, points, settings, most):
         """The trees over the points, of `most` leaves each; [] if time was up."""
+        parts = [self.part(point) for point in points]
         return self.survey([
-            native.Task(self.weakest.part(self.region(point)), settings, _text(point))
-            for point in points], most)
+            native.Task(self.weakest.part((part.v0, part.v1)), settings, _text(point))
+            for part, point in zip(parts, points)], most)
 
     def proof(self, point):
         """A tree over the point, tried to the end; None if time was up."""
@@ -168,11 +171,14 @@ class _Image:
         return grown[0] if grown else None
 
     def shifts(self, point):
-        """How the region over this point is to move with the parameters; () if there are none."""
+        """How the region over this point is to move with the parameters; () if there are none.
+        Half of a region does not move along v1."""
         grown = self.proof(point) if _has_width(self.problem) else None
-        return () if grown is None else best_shifts(
-            self.problem.part(self.region(point)), self.weakest.amplitude, _text(point),
-            grown.text)
+        if grown is None:
+            return ()
+        part = self.part(point)
+        shifts = best_shifts(part, self.weakest.amplitude, _text(point), grown.text)
+        return tuple((s0, Fraction(0)) for s0, _ in shifts) if folds(part, _text(point)) else shifts
 
 
 def _best_start(image, others):
@@ -238,13 +244,6 @@ def _candidates(look, known, start, ways):
 
 def _moved(point, step, way):
     return tuple(round(a + step * b, 6) for a, b in zip(point, way))
-
-
-def _part(problem, region, xstar, shifts=()):
-    """The region of the problem over x*, or half of it if its mirror image is the other half.
-    Regions that move are not halved, as they also move along v1."""
-    part = problem.part(region, shifts)
-    return part if _has_width(problem) else halved(part, xstar)
 
 
 def _has_width(problem):

@@ -90,7 +90,7 @@ def test_one_proof_has_one_number_of_prisms():
     assert linked.startswith(found + ",")
     assert "the proof down to 0.0139 takes %s prisms" % found in words("speed.md")
     alone, = [leaves for epsilon, leaves, *_ in rows("trust.md", "epsilon") if epsilon == "0.0139"]
-    assert "0.0139 alone takes %s prisms" % alone in words("method.md")
+    assert "with release 4.0.0 it took %s." % alone in words("method.md")
 
 
 def test_the_links_of_the_standard_map():

@@ -9,6 +9,7 @@ from test_links import make_links_easy
 
 from converse import Problem, prove
 from converse.model.map import LINE, MuldoonMap, SymplecticMap
+from converse.model.region import folds
 from converse.prover import native, starts
 from converse.prover.settings import Settings
 from converse.prover.shifts import STEPS, best_shifts
@@ -114,12 +115,15 @@ def test_where_the_waves_bend_least():
 
 
 def test_a_range_is_linked_to_a_region_that_moves(monkeypatch):
-    """Where links are made of short orbits already."""
+    """Where links are made of short orbits already.  The second region is half of one that the
+    exchange of the angles maps to itself: it moves along v0 alone."""
     make_links_easy(monkeypatch)
     proof = prove(line("0.0145", "0.0146", axes=None), method="loewner")
-    (part,) = proof.parts
+    whole, half = proof.parts
     assert proof.no_tori and proof.counts.linked and proof.counts.proved < 2000
-    assert any(any(shift) for shift in part.problem.shifts)
+    assert whole.problem.shifts[0][1] and not folds(whole.problem, whole.xstar)
+    assert half.problem.shifts[0][0] and folds(half.problem, half.xstar)
+    assert half.problem.v1[0] == 0 and proof.verify()
 
 
 @pytest.mark.slow
