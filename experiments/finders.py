@@ -35,7 +35,7 @@ def flow(state, eps=None, grad_size=1e-6, max_steps=10000, dt=0.5):
     """Gradient flow (thesis, Appendix A), for comparison: du/dtau = -dL/du until the gradient's
     root mean square is at most grad_size.  The kinetic part is taken implicitly, so that dt may be
     large.  Returns the state, "not stationary" perhaps, and the number of steps."""
-    state = replace(state, eps=state.eps if eps is None else eps, searches=0)
+    state = replace(state, eps=state.eps if eps is None else eps)
     wave = 2 - 2 * np.cos(2 * np.pi * np.fft.rfftfreq(state.q))
     damping = 1 / (1 + dt * wave)[:, None]
     for steps in range(max_steps):

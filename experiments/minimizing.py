@@ -17,6 +17,7 @@ import os
 import sys
 
 from least_action import mather_beta
+from less_action import search
 
 from converse import ConverseError, orbits
 from converse.draw import plot
@@ -35,7 +36,7 @@ SAME = 1e-13                        # actions that differ by less are one
 def states(potential, p, q, eps, searches):
     """Continuation's state and the best found."""
     return (orbits.follow(potential, p, q, [eps])[0],
-            orbits.search(potential, p, q, eps, searches=searches))
+            search(potential, p, q, eps, searches=searches))
 
 
 def bounds(potential, rotation, eps, grid):

@@ -198,8 +198,6 @@ def _find_parser(commands):
                       "followed from one value to the next")
     find.add_argument("--at", type=_value, metavar="NAME=VALUE", action="append", default=[],
                       help=AT)
-    find.add_argument("--search", type=whole_number(1), metavar="N", help="look for less action "
-                      "than continuation finds, N times")
     find.add_argument("--prove", action="store_true", help="prove that an orbit is near each "
                       "state and is a minimum; enclose its action and its exponents")
     find.add_argument("--minimax", action="store_true", help="find the pass to the neighbouring "
@@ -212,8 +210,6 @@ def _find_parser(commands):
     find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
                       "the states: SVG, PNG or PDF by the name")
     find.add_argument("--no-caption", action="store_true", help="draw no caption")
-    find.add_argument("--seed", type=whole_number(0), default=0, metavar="N",
-                      help="seed of --search (default 0)")
     find.set_defaults(run=find_states)
     return find
 
@@ -268,8 +264,6 @@ def _start(options, potential, straight, eps):
     """The state that is followed: the straight orbit, or a state of a file."""
     if options.start is None:
         return straight
-    if options.search is not None:
-        raise ConverseError("--search begins anew at each eps; leave out --from")
     from ..orbits.points import load
 
     family = load(options.start, potential)
@@ -343,7 +337,6 @@ def find_states(options):
 
     from ..orbits.proved import balls
     from ..orbits.report import header
-    from ..orbits.search import search
     from ..orbits.solver import follow, reached, straight
 
     if options.prove:
@@ -358,18 +351,10 @@ def find_states(options):
     with ProgressLine() as line:
         found = _Finding(options, line)
         try:
-            if options.search is None:
-                follow(potential, p, q, eps, start=start,
-                       progress=lambda _, state: found.add(state),
-                       on_step=lambda state: line(lambda: "at eps %g, %d of %d states found" % (
-                           state.eps, len(found.states), len(eps))))
-            else:
-                for x in eps:
-                    found.add(search(
-                        potential, p, q, x, options.search, seed=options.seed,
-                        progress=lambda done, best: line(
-                            lambda: "eps %g: %d of %d searches, least action %.12g" % (
-                                best.eps, done, options.search, best.action))))
+            follow(potential, p, q, eps, start=start,
+                   progress=lambda _, state: found.add(state),
+                   on_step=lambda state: line(lambda: "at eps %g, %d of %d states found" % (
+                       state.eps, len(found.states), len(eps))))
         except ConverseError as reason:
             found.tell("\nNot found : %s\n" % plain(str(reason)))
             found.failed = True

@@ -13,7 +13,6 @@ try:
     from .minimax import Pair
     from .potential import Potential, ff, froeschle, poly, standard, trig
     from .proved import NotProved, ProvedOrbit, prove
-    from .search import search
     from .solver import Family, follow, straight
     from .state import PeriodicOrbit
     from .sweep import Onset, onset, onsets, sweep
@@ -29,5 +28,5 @@ except ImportError as _error:           # raised when a name is used: the comman
         raise ConverseError(_MISSING)
 
 __all__ = ["Family", "NotProved", "Onset", "Pair", "PeriodicOrbit", "Potential", "ProvedOrbit",
-           "ff", "follow", "froeschle", "onset", "onsets", "poly", "prove", "search", "standard",
-           "straight", "sweep", "trig"]
+           "ff", "follow", "froeschle", "onset", "onsets", "poly", "prove", "standard", "straight",
+           "sweep", "trig"]

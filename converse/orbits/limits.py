@@ -37,19 +37,6 @@ MAX_ONSET_HALVINGS = 10         # The step of eps is halved so often.
 ONSET_TIMES_CURVATURE = 0.03, 0.0006, 4.0   # Step, width and top of onset(), times the curvature.
 TASKS_PER_WORKER = 2            # One is worked on, the other waits.
 
-# ---- the search for less action
-
-MAX_SEARCH_STEPS = 1000         # Newton steps in one search; few take more than a hundred.
-MAX_TURNS_TRIED = 50            # Turns of the best state that are tried before random changes.
-MAX_JOINTS_TRIED = 12           # Joints of two shorter states that are tried before random changes.
-SHORT_WORK = 10000              # Points times searches for a shorter type, but two for each joint.
-MAX_SHORT_SEARCHES = 100        # Searches for a shorter type.
-JOINT_SAMPLE = 1000             # Points of a state that are compared with another's for a joint.
-PIECE_SPACING = 60              # The mean distance, in points, of pieces that are moved together.
-PIECE_LENGTH = 10               # The mean length of a piece, in points.
-MOVE_SIZES = 0.1, 0.3, 0.6      # A piece moves by a normal deviate times one of these.
-JOINT_RELIEF = 0.4              # The part of a joint's cost that relaxing takes away: _recombined.
-
 # ---- passes
 
 ORDER_TOLERANCE = 1e-9          # A smaller disorder of neighbours on the circle may be rounding.

@@ -142,7 +142,7 @@ def minimax(state, step=0):
     gap = _gap(state, r, vector)
     if state.potential.n == 1 and not gap.min() > -ORDER_TOLERANCE:
         raise ConverseError("the points of the state are not ordered as those of a rotation, so "
-                            "that it is not the least of its type: search() for that")
+                            "that it is not the least of its type: take another state")
     beyond = state.moved(state.u + gap)
     for rank in range(min(MAX_HELD, gap.size)):
         found = _Way(state, beyond, MAX_NESTED_JUMPS, rank).top(least=state.potential.n == 1)
@@ -212,7 +212,7 @@ class _Way:
             stops.append(self.at(k / PASS_STOPS, stops[-1][0]))
             if least and stops[-1][1] < -self.noise:
                 raise ConverseError("on the way to its neighbour there is less action than that of "
-                                    "the state: search() for the least one first")
+                                    "the state, which is not the least of its type: take another")
         if max(abs(slope) for _, _, slope in stops[1:]) < MIN_SLOPE:
             return stops[PASS_STOPS // 2][0]
         tops = []

@@ -205,7 +205,7 @@ def family_plot(family, column, ax=None):
         raise ValueError("a family without states cannot be drawn")
     plot.check()
     values = np.array([getattr(state, column) for state in family], dtype=float)
-    minima = np.array([minimum(state) for state in family])
+    minima = np.array([state.label == "minimum" for state in family])
     if ax is not None:
         return _against_eps(ax, family, column, values, minima)
 
@@ -234,8 +234,3 @@ def _against_eps(ax, family, column, values, minima):
     ax.set(xlabel="ε", ylabel=PLOTTED[column])
     ax.xaxis.get_major_locator().set_params(nbins=6)
     return ax
-
-
-def minimum(state):
-    """Whether doubles show a minimum."""
-    return state.label == "minimum" or state.label.startswith("best of")

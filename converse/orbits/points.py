@@ -29,8 +29,8 @@ def save(states, path):
         raise ValueError("a file holds states of one potential and one type, at least one")
     data, first = io.BytesIO(), states[0]
     np.savez(data, converse=FORMAT, potential=first.potential.name, p=first.p, q=first.q,
-             eps=[state.eps for state in states], searches=[state.searches for state in states],
-             x=[state.x for state in states], momentum=[state.momenta for state in states],
+             eps=[state.eps for state in states], x=[state.x for state in states],
+             momentum=[state.momenta for state in states],
              u=[state.u for state in states], origin=[state.origin for state in states])
     files.write(path, data.getvalue())
 
@@ -53,9 +53,8 @@ def load(path, potential=None):
             name = str(stored["potential"])
             p, q = tuple(int(x) for x in stored["p"]), int(stored["q"])
             found = [(float(eps), u.astype(float, casting="same_kind"),
-                      tuple(map(float, origin)), int(searches))
-                     for eps, u, origin, searches in zip(
-                         *(stored[key] for key in ("eps", "u", "origin", "searches")))]
+                      tuple(map(float, origin)))
+                     for eps, u, origin in zip(*(stored[key] for key in ("eps", "u", "origin")))]
     except (ValueError, KeyError, IndexError, TypeError, OverflowError, EOFError,
             zipfile.BadZipFile, MemoryError, RuntimeError, zlib.error):
         found = []
@@ -71,7 +70,7 @@ def load(path, potential=None):
         raise ConverseError("%s: its potential is '%s', not %s" % (path, files.plain(name),
                                                                   potential.name))
     try:
-        return Family(tuple(PeriodicOrbit(potential, p, q, eps, u, origin, searches)
-                            for eps, u, origin, searches in found))
+        return Family(tuple(PeriodicOrbit(potential, p, q, eps, u, origin)
+                            for eps, u, origin in found))
     except ValueError as error:
         raise ConverseError("%s: is damaged: %s" % (path, error)) from None

@@ -9,7 +9,6 @@ from .state import vector_words
 LARGE = 1e10                            # Stability indices above it are given by their logarithm.
 MEANINGS = {                            # of labels
     "minimum": "floating point, not proved: a local minimum of the action, perhaps not global",
-    "best": "floating point, not proved: a local minimum, of the least action met",
     "saddle": "floating point: its action can be lowered, perhaps when it is run through often",
     "stationary": "floating point: rounding hides whether it is a minimum",
     "not stationary": "not an orbit",
@@ -35,7 +34,7 @@ def report(state):
     """The lines of one state."""
     lines = [
         "eps : %r" % state.eps,
-        "State : %s (%s)" % (state.label, MEANINGS.get(state.label, MEANINGS["best"])),
+        "State : %s (%s)" % (state.label, MEANINGS[state.label]),
         "%s : %.12g" % (action_words(state.potential), state.action),
         "Exponents : " + ", ".join(exponent_text(state, x, 10) for x in state.exponents),
         ("Residue : %.10g" % state.residue if state.potential.n == 1 else

@@ -261,7 +261,7 @@ def newton(state: PeriodicOrbit, eps: Optional[float] = None,
     """Newton's method without damping (thesis, Appendix A): it finds any stationary state, a
     minimum or a saddle, or nothing.  Returns the last state, "not stationary" perhaps, and the
     number of steps."""
-    state = replace(state, eps=state.eps if eps is None else eps, searches=0)
+    state = replace(state, eps=state.eps if eps is None else eps)
     for steps in range(max_steps + 1):
         if steps == max_steps or np.abs(state._gradient).max() <= NEWTON_GRADIENT:
             break

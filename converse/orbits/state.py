@@ -129,9 +129,6 @@ class PeriodicOrbit:
         The displacements from the straight orbit, in turns.
     origin : sequence of float, shape (n,)
         The point of the straight orbit with j = 0, in turns.
-    searches : int
-        The number of searches among whose results this has the least action; 0: there was no
-        search.
 
     Raises
     ------
@@ -149,7 +146,6 @@ class PeriodicOrbit:
     eps: float
     u: np.ndarray
     origin: Tuple[float, ...]
-    searches: int = 0
 
     def __post_init__(self):
         object.__setattr__(self, "potential", known(self.potential))
@@ -167,12 +163,11 @@ class PeriodicOrbit:
             raise ValueError("the origin is %d numbers below %d in size, not %r"
                              % (n, MAX_DISPLACEMENT, self.origin))
         for name, value in (("p", p), ("q", q), ("u", _fixed(u)), ("origin", origin),
-                            ("eps", eps), ("searches", whole("searches", self.searches, 0))):
+                            ("eps", eps)):
             object.__setattr__(self, name, value)
 
     def __reduce__(self):               # the default would copy caches and make u writable
-        return PeriodicOrbit, (self.potential, self.p, self.q, self.eps, self.u, self.origin,
-                               self.searches)
+        return PeriodicOrbit, (self.potential, self.p, self.q, self.eps, self.u, self.origin)
 
     def __repr__(self) -> str:
         return "<PeriodicOrbit %s, type %s, eps %r, %s>" % (
@@ -330,7 +325,6 @@ class PeriodicOrbit:
             has a negative eigenvalue
         "minimum" -- an orbit without such an eigenvalue; those counted by `undetermined` are too
             small to have a sign
-        "best of N searches" -- a minimum, of least action among the results of N searches
         "stationary" -- an orbit; rounding hides whether it is a minimum or a saddle"""
         if not self._shadow < MAX_SHADOW:
             return "not stationary"
@@ -341,7 +335,7 @@ class PeriodicOrbit:
                 return "saddle"
             if rounds < 0:
                 return "stationary"
-        return "best of %d searches" % self.searches if self.searches else "minimum"
+        return "minimum"
 
     @property
     def undetermined(self) -> int:
@@ -546,7 +540,7 @@ class PeriodicOrbit:
         u : array of float, shape (q, n)
             In turns.
         """
-        return replace(self, u=u, searches=0)
+        return replace(self, u=u)
 
     def repeat(self, n: int) -> "PeriodicOrbit":
         """The orbit run through several times: a state of type (n p, n q).
@@ -558,7 +552,7 @@ class PeriodicOrbit:
         """
         n = whole("how often an orbit is run through", n, 1, MAX_Q // self.q)
         return replace(self, p=tuple(n * i for i in self.p), q=n * self.q,
-                       u=np.tile(self.u, (n, 1)), searches=0)
+                       u=np.tile(self.u, (n, 1)))
 
     def relax(self, eps: Optional[float] = None, tol: float = 1e-13,
               max_steps: int = 10000) -> "PeriodicOrbit":
@@ -584,7 +578,7 @@ class PeriodicOrbit:
             raise ConverseError(
                 "no orbit of type %s found at eps %r: the gradient is still %.1e after %d steps"
                 % (self.type_text, eps, how.largest, how.steps))
-        return replace(self, eps=eps, u=u, searches=0)
+        return replace(self, eps=eps, u=u)
 
 
 def descended(state, eps, tol, max_steps, held=None):

@@ -208,13 +208,13 @@ def test_a_file_of_bare_numbers_is_no_potential(run, tmp_path, text):
     assert (status, out) == (2, "") and one_line(err) and "mine, line 1: " in err
 
 
-def test_proof_and_search(run):
-    """--prove gives the theorem of prove, --search the state of search."""
-    status, out, err = run("find", "trig", "5,7/9", "0.03", "--search=5", "--seed=3", "--prove")
+def test_proof(run):
+    """--prove gives the theorem of prove."""
+    status, out, err = run("find", "trig", "5,7/9", "0.03", "--prove")
     assert (status, err) == (0, "")
-    state = orbits.search(orbits.trig, (5, 7), 9, 0.03, 5, seed=3)
-    assert "State : %s (floating point, not proved" % state.label in out
-    assert state.label.startswith("best of ") and out.endswith(orbits.prove(state).report())
+    state, = orbits.follow(orbits.trig, (5, 7), 9, [0.03])
+    assert "State : minimum (floating point, not proved" in out
+    assert out.endswith(orbits.prove(state).report())
     status, out, err = run("find", "trig", "200,265/351", "0", "--prove")
     assert (status, err) == (1, "") and "\nNot proved : " in out
 
@@ -293,7 +293,6 @@ def test_help_and_version(run):
     *[(["find", "trig", SMALL, bad], "is neither a number below 10^9") for bad in (
         "x", "1e10", "nan", "inf", "1e400", "1e9999999999", "1/0", "1:2", "1:2:3:4", "", "1_0")],
     (["find", "trig", SMALL, "1e6"], "too far to be followed"),
-    (["find", "trig", SMALL, "1e6", "--search", "2"], "too far to be followed"),
     (["sweep", "trig", "DIR/x.csv", "1e6", "--random", "1", "--sizes", "5:9"],
      "too far to be foll"),
     (["find", "trig", "5,7/999999999", "0.01"], "from 1 to 10000000"),
@@ -301,7 +300,6 @@ def test_help_and_version(run):
         "1:2:0", "2:1:0.1", "0:1:1e-9")],
     (["find", "none", SMALL, "0.01"], "neither a potential nor a file"),
     (["find", "DIR", SMALL, "0.01"], "cannot be read"),
-    (["find", "trig", SMALL, "0.01", "--search", "0"], "whole number"),
     (["find", "trig", SMALL, "0.01", "--csv", "DIR"], "ends in .csv"),
     (["find", "trig", SMALL, "0.01", "--csv", "DIR/a.json"], "ends in .csv"),
     (["find", "trig", SMALL, "0.01", "--csv", "DIR/other.csv"], "exists and is a table"),

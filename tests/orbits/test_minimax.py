@@ -6,6 +6,7 @@ from dataclasses import replace
 import mpmath
 import numpy as np
 import pytest
+from less_action import search
 from sums import fourier
 
 from converse import ConverseError, orbits
@@ -180,8 +181,8 @@ def test_potentials_without_symmetry():
     for k in range(8):
         potential = fourier({(i,): tuple(rng.normal(size=2) / 40 / i ** 2.5)
                                     for i in range(1, 5)}, "own %d" % k)
-        state = orbits.search(potential, ((2,), (5,))[k % 2], (5, 8)[k % 2],
-                              float(rng.choice([0.8, 2, 6])), 60)
+        state = search(potential, ((2,), (5,))[k % 2], (5, 8)[k % 2],
+                       float(rng.choice([0.8, 2, 6])), 60)
         pair, r = state.minimax(), pow(state.p[0], -1, state.q)
         gap = np.roll(state.u, -r, 0) - state.u + 1 / state.q
         held, heights = int(np.argmax(gap)), []
@@ -241,7 +242,7 @@ def test_a_state_that_is_not_the_least():
     potential = fourier({(1,): (0.01, 0), (2,): (0.05, 0)}, "two")
     upper = orbits.PeriodicOrbit(potential, (0,), 1, 1.0, [[0.0]], (0.5,)).relax()
     assert upper.label == "minimum"
-    with pytest.raises(ConverseError, match="search"):
+    with pytest.raises(ConverseError, match="not the least"):
         upper.minimax()
     state = least(orbits.standard, (1,), 3, 100.0)
     jumbled = state.moved(state.u + [[0.0], [2.0], [0.0]]).relax()
@@ -276,7 +277,7 @@ def test_gaps():
 def test_no_pass_where_a_higher_one_may_have_been_missed(monkeypatch):
     """Two hills on the way: the lower one is not the pass when the other is not found."""
     potential = fourier({(1,): (1, 0), (2,): (0.4, 0.05)}, "two hills")
-    state = orbits.search(potential, (0,), 1, 0.02, 10, seed=1)
+    state = search(potential, (0,), 1, 0.02, 10, seed=1)
     between, found = minimax._Way.between, []
 
     def counted(way, low, high):

@@ -5,7 +5,6 @@ import io
 import json
 import pickle
 import re
-from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
@@ -284,7 +283,6 @@ def test_formulas_say_what_v_is():
     (lambda: orbits.follow(orbits.trig, (5, 7), 9, ["a"]), "eps: finite"),
     (lambda: orbits.follow(orbits.trig, (5, 7), 9, [1e6]), "more than 10000 steps of 0.0025"),
     (lambda: orbits.follow(orbits.trig, (5, 7), 9, [20.0, -20.0]), "eps -20.0 is more than"),
-    (lambda: orbits.search(orbits.trig, (5, 7), 9, 1e6), "more than 10000 steps"),
     (lambda: orbits.follow("trig", (5, 7), 9, [0.01]), "map is a SymplecticMap"),
     (lambda: orbits.follow(orbits.trig, (5, 7), 9, [0.01], 3), "progress is a function"),
     (lambda: orbits.follow(orbits.trig, 5, 9, [0.01]), "whole"),
@@ -299,8 +297,6 @@ def test_formulas_say_what_v_is():
     (lambda: orbits.PeriodicOrbit(orbits.trig, (1, 1), 2, 0.1, "a", (0, 0)), "rows"),
     (lambda: orbits.PeriodicOrbit(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)) * 1j, (0, 0)),
      "rows"),
-    (lambda: orbits.PeriodicOrbit(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0), -3),
-     "searches"),
     (lambda: orbits.prove(3), "a state is expected"),
     (lambda: orbits.onset("trig", (5, 7), 9), "map is a SymplecticMap"),
     (lambda: orbits.onset(orbits.trig, (5, 7), 0), "whole"),
@@ -527,8 +523,8 @@ def test_states_are_values(tmp_path):
         for name in ("u", "base", "momenta", "gradient", "blocks", "exponents"):
             with pytest.raises(ValueError, match="read-only"):
                 getattr(again, name)[0] = 1
-    double = replace(state, searches=20).repeat(2)
-    assert double.label == "minimum"                    # no search was for that type
+    double = state.repeat(2)
+    assert double.label == "minimum"
     assert (double.p, double.q) == ((10, 14), 18)
     assert double.action == pytest.approx(state.action, abs=1e-15)
     assert np.allclose(double.exponents, state.exponents, atol=1e-12)

@@ -368,7 +368,7 @@ def test_pairs_at_the_same_place():
 
 # ---- potentials from Python that misbehave, Ctrl-C
 
-def test_ctrl_c_ends_a_long_search():
+def test_ctrl_c_ends_a_long_descent():
     """A thread that shall end does so in the C core, which asks between rounds of 2^18 points."""
     rng = np.random.default_rng(7)
     state = orbits.PeriodicOrbit(orbits.trig, (0, 0), 30000, 0.04,
@@ -406,7 +406,7 @@ def test_short_orbits():
 
 
 def test_the_action_of_a_long_orbit_keeps_its_digits():
-    """The search compares actions; sums of a hundred thousand terms, one after the other, would
+    """Actions are compared; sums of a hundred thousand terms, one after the other, would
     lose what tells a step down from one up."""
     rng = np.random.default_rng(9)
     q = 100083
@@ -452,7 +452,6 @@ def test_blocks_of_ten_thousand_against_a_dense_step():
 
 LONG = {                # what is made first, and a call that then lasts, at some 100,000 points
     "follow": ("", "[orbits.follow(orbits.trig, *LONG, [0.03]) for _ in range(99)]"),
-    "search": ("", "orbits.search(orbits.trig, *LONG, 0.02, 1000)"),
     "prove": ("state = orbits.follow(orbits.trig, *LONG, [0.0125])[0]", "orbits.prove(state)"),
     "pairs": ("state = orbits.straight(orbits.trig, *LONG)",
               "[state.pairs(200000) for _ in range(99)]"),
@@ -469,7 +468,7 @@ def test_ctrl_c_ends_every_long_call(name):
     """Soon, wherever it strikes.  A second on a machine with nothing else to do; the bound is for
     one with much."""
     first, call = LONG[name]
-    code = ("from converse import orbits\nfrom converse.orbits import proved, search\n"
+    code = ("from converse import orbits\nfrom converse.orbits import proved\n"
             "LONG = (57031, 75550), 100083\n%s\nfor _ in range(2):\n    print(flush=True)\n"
             "    try:\n        %s\n    except KeyboardInterrupt:\n"
             "        print('ended', flush=True)" % (first, call))

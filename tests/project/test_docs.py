@@ -72,7 +72,7 @@ def test_extras_are_added_by_make():
 
 def test_experiments_exist():
     shown = {name for text in TEXTS.values()
-             for name in re.findall(r"`(?:experiments/)?([a-z]+\.py)`", text)}
+             for name in re.findall(r"`(?:experiments/)?([a-z_]+\.py)`", text)}
     scripts = {path.name for path in (ROOT / "experiments").glob("*.py")}
     assert scripts <= shown
 

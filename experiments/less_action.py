@@ -1,6 +1,11 @@
 """A search for the state of least action of a type: is continuation's orbit the minimizing one?
 
-Continuation (solver.follow) keeps to one branch of minima.  Here damped Newton descends from many
+    python experiments/less_action.py POTENTIAL TYPE EPS [--searches N] [--seed N] [--points FILE]
+
+prints the state of least action that N searches find.  `converse-orbits find --from FILE` goes on
+from it.
+
+Continuation (orbits.follow) keeps to one branch of minima.  Here damped Newton descends from many
 guesses, as in basin hopping (Wales and Doye 1997).  That alone fails for long orbits, whose minima
 are too many; but the action is a sum along the orbit, and so
 - the better pieces of two states of a type make a third, by dynamic programming (_recombined); the
@@ -9,28 +14,31 @@ are too many; but the action is a sum along the orbit, and so
   types (_joint).  Those of the two are searched for in the same way.
 """
 
+import argparse
 import math
 from dataclasses import replace
-from typing import Callable, Optional
 
 import numpy as np
 
-from ..storage.files import ConverseError
-from .limits import (JOINT_RELIEF, JOINT_SAMPLE, MAX_JOINTS_TRIED, MAX_SEARCH_STEPS,
-                     MAX_SHORT_SEARCHES, MAX_TURNS_TRIED, MOVE_SIZES, PIECE_LENGTH, PIECE_SPACING,
-                     SHORT_WORK)
-from .potential import Numerators, Source, told, whole
-from .solver import follow, straight
-from .state import PeriodicOrbit
+from converse import ConverseError
+from converse.commands.orbits import _vector, read_potential
+from converse.orbits import PeriodicOrbit, follow, straight
+
+MAX_SEARCH_STEPS = 1000         # Newton steps in one search; few take more than a hundred.
+MAX_TURNS_TRIED = 50            # Turns of the best state that are tried before random changes.
+MAX_JOINTS_TRIED = 12           # Joints of two shorter states that are tried before random changes.
+SHORT_WORK = 10000              # Points times searches for a shorter type, but two for each joint.
+MAX_SHORT_SEARCHES = 100        # Searches for a shorter type.
+JOINT_SAMPLE = 1000             # Points of a state that are compared with another's for a joint.
+PIECE_SPACING = 60              # The mean distance, in points, of pieces that are moved together.
+PIECE_LENGTH = 10               # The mean length of a piece, in points.
+MOVE_SIZES = 0.1, 0.3, 0.6      # A piece moves by a normal deviate times one of these.
+JOINT_RELIEF = 0.4              # The part of a joint's cost that relaxing takes away: _recombined.
 
 
-def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches: int = 200,
-           seed: int = 0,
-           progress: Optional[Callable[[int, PeriodicOrbit], object]] = None) -> PeriodicOrbit:
-    """The state of type (p, q) of least action that many searches find.
-
-    It is not proved to be the least.  Its attribute `searches` is the number of searches, and its
-    label "best of N searches" if it is a minimum.
+def search(potential, p, q, eps=1.0, searches=200, seed=0, progress=None):
+    """The state of type (p, q) of least action that many searches find; it is not proved to be the
+    least.
 
     Parameters
     ----------
@@ -62,19 +70,13 @@ def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches:
     of shorter types, whose own searches are not counted; turns of the best state so far; pieces of
     it moved; and straight orbits elsewhere, some relaxed at a larger eps first.
     """
-    searches = whole("searches", searches, 1)
-    told(progress)
-    try:
-        rng = np.random.default_rng(seed)
-    except (TypeError, ValueError):
-        raise ValueError("the seed is a whole number, 0 or more, not %r" % (seed,)) from None
     guess = replace(straight(potential, p, q), eps=eps)
-    of_type = _TypeSearch(guess, searches, rng, {}, progress)
+    of_type = _TypeSearch(guess, searches, np.random.default_rng(seed), {}, progress)
     of_type.run()
     if of_type.best is None:
         raise ConverseError("no orbit of type %s found at eps %r: none of %d searches ended"
                             % (guess.type_text, eps, of_type.begun))
-    return replace(of_type.best, searches=of_type.ended)
+    return of_type.best
 
 
 class _TypeSearch:
@@ -283,3 +285,23 @@ def _joint(p, q, first, i, second, j):
         for state, k, begin in ((first, i, 0.0), (second, j, np.array(first.p)))])
     return PeriodicOrbit(first.potential, p, q, first.eps,
                  path - np.arange(q)[:, None] * (np.array(p) / q), first.turns[i])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("potential", metavar="POTENTIAL")
+    parser.add_argument("type", metavar="TYPE", type=_vector)
+    parser.add_argument("eps", metavar="EPS", type=float)
+    parser.add_argument("--searches", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--points", metavar="FILE")
+    options = parser.parse_args()
+    best = search(read_potential(options.potential), *options.type, options.eps, options.searches,
+                  options.seed)
+    print(best.report(), end="")
+    if options.points is not None:
+        best.save(options.points)
+
+
+if __name__ == "__main__":
+    main()
