@@ -22,7 +22,7 @@ SUMMARIES = {
     "commands.prove": "prove that a family of symplectic maps has no invariant tori",
     "check": "verify the theorem of a proof file, independently of its prover",
     "commands.map": "map where in parameter space there are no invariant tori, with proofs",
-    "commands.orbits": "find periodic orbits of least action, and their onsets",
+    "commands.orbits": "find periodic orbits of least action",
     "commands.portrait": "prove where in phase space a map has no invariant circles",
     "commands.tori": "prove that a symplectic map has an invariant torus",
 }

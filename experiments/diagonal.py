@@ -18,6 +18,7 @@ import sys
 from fractions import Fraction
 
 import numpy as np
+from sweep import onsets
 
 from converse import orbits
 from converse.commands.common import ended
@@ -61,8 +62,8 @@ def nobles(length, largest, least):
     heads = [head for n in range(1, length + 1)
              for head in itertools.product(range(1, largest + 1), repeat=n)
              if head[0] > 1 and head[-1] > 1]
-    table = orbits.onsets(diagonal(), [noble(head, least) for head in heads],
-                          step=0.0005, width=1e-5, top=0.02)
+    table = onsets(diagonal(), [noble(head, least) for head in heads],
+                   step=0.0005, width=1e-5, top=0.02)
     return sorted(zip((table["eps_below"] + table["eps_above"]) / 2, heads), reverse=True)
 
 

@@ -18,11 +18,11 @@ from itertools import permutations, product
 from math import ceil, floor
 from typing import Iterator, List, Tuple, Union
 
+import farey
 import numpy as np
 
 from converse.commands.common import Parser, ended
 from converse.model.exact import Number, exact, short_text
-from converse.orbits import farey
 from converse.storage.files import ConverseError
 from converse.tori.field import Element, Field, real_roots
 from converse.tori.rotation import Rotation

@@ -24,6 +24,7 @@ import random
 import sys
 
 import numpy as np
+from sweep import onsets
 
 from converse import orbits
 from converse.commands.common import ended
@@ -284,7 +285,7 @@ def main():
         return os.path.join(options.directory, name)
 
     def find(name, potential, vectors, **how):
-        table = orbits.onsets(potential, list(vectors), file=path(name), jobs=options.jobs, **how)
+        table = onsets(potential, list(vectors), file=path(name), jobs=options.jobs, **how)
         print("%s: %d types, %d lost" % (name, len(table), (table["label"] == "lost").sum()),
               flush=True)
         return table

@@ -40,8 +40,7 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # Files that `make check` leaves out, beside single tests that are marked slow.
 SLOW = ("check/", "commands/test_orbits_cli", "formal/", "loewner/test_loewner",
-        "loewner/test_margins", "loewner/test_waves", "parameters/",
-        "orbits/test_sweep", "project/test_chart",
+        "loewner/test_margins", "loewner/test_waves", "parameters/", "project/test_chart",
         "project/test_install", "project/test_mutate",
         "project/test_numbers", "project/test_sides", "project/test_types", "project/test_vectors",
         "project/test_where_methods_fail", "prover/test_parallel", "storage/")

@@ -50,21 +50,6 @@ sys.exit(main())
 """
 
 
-# In front of a sweep: it goes no further when it has written so many families.
-SWEEP_HELD = """
-import sys, time
-from converse.storage.files import AppendedFile
-append, left = AppendedFile.append, int(sys.argv.pop(1))
-def append_or_wait(self, text):
-    global left
-    append(self, text)
-    left -= 1                       # the header, with what was there before, is the first
-    while left < 0:
-        time.sleep(1)
-AppendedFile.append = append_or_wait
-"""
-
-
 def wait_until(there, process):
     """Until there() is true, which it must be before the process ends."""
     end = time.monotonic() + PATIENCE

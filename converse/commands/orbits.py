@@ -1,10 +1,9 @@
-"""The command: converse-orbits find | sweep."""
+"""The command: converse-orbits find."""
 
 import argparse
 import io
 import math
 import os
-import random
 import re
 import sys
 
@@ -13,12 +12,11 @@ from ..model.map import SymplecticMap
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
-from .common import SIGNALS, Parser, ProgressLine, check_figure, command, ending, say, whole_number
+from .common import SIGNALS, Parser, ProgressLine, check_figure, command, ending, say
 
 COMMAND = "converse-orbits"
 POTENTIALS = "trig", "poly", "ff", "froeschle", "standard"
 MOST_EPS = 10000                        # values of eps
-SIZES = 300, 1200                       # q of a sweep, unless others are asked for
 SISTERS = ("converse-tori      proves that a torus exists\n"
            "converse-portrait  shows where in phase space a map of one angle has no circle\n"
            "converse           proves that there are no tori")
@@ -27,9 +25,6 @@ FIND = ending(
         (0, "all was found that was asked for"),
         (1, "an orbit was not found, is not a minimum, or is not proved with --prove"),
         (2, "bad usage, input or file"), SIGNALS))
-SWEEP = ending("converse-orbits sweep standard onsets.csv --farey 0.618 --sizes 10:300", SISTERS, (
-    (0, "all was found that was asked for"), (1, "an orbit was lost"),
-    (2, "bad usage, input or file"), SIGNALS))
 POTENTIAL = ("trig, poly, ff, froeschle, standard, or an input file: JSON of the harmonics of V "
              "(manual: reference/inputs)")
 AT = "the value of a parameter of the file; may be given again"
@@ -63,40 +58,6 @@ def _vector(text):
         raise argparse.ArgumentTypeError("'%s' is not a type: write p0,p1/q, or p/q for one "
                                          "angle, whole numbers of at most 9 digits" % text)
     return tuple(int(p) for p in match.groups()[:2] if p is not None), int(match[3])
-
-
-def _sizes(text):
-    match = re.fullmatch(r"(\d{1,9}):(\d{1,9})", text, re.ASCII)
-    if not match or not 1 <= int(match[1]) <= int(match[2]):
-        raise argparse.ArgumentTypeError("'%s' is not a range LOW:HIGH of whole numbers above 0"
-                                         % text)
-    return int(match[1]), int(match[2])
-
-
-def _target(text):
-    try:
-        target = [exact(word.strip()) for word in text.split(",")]
-        if len(target) > 2 or not all(0 < w < 1 for w in target):
-            raise ValueError
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            "'%s' is not one or two decimals or fractions between 0 and 1: w0,w1" % text) from None
-    return target
-
-
-def _lines(path):
-    """The lines of a file that say something, with their numbers."""
-    try:
-        with open(path, encoding="utf-8") as file:
-            for number, line in enumerate(file, 1):
-                words = line.partition("#")[0].strip()
-                if words:
-                    yield number, words
-    except OSError as error:
-        raise ConverseError("%s: cannot be read (%s); name a readable file"
-                            % (path, files.reason(error))) from None
-    except UnicodeDecodeError:
-        raise ConverseError("%s: is not a text file; name a list of types" % path) from None
 
 
 def _value(text):
@@ -136,42 +97,6 @@ def _check_type(potential, vector):
     return vector
 
 
-def vectors_of(options, potential):
-    """The rotation vectors of a sweep: from a file, along the Farey tree or triangle, or random."""
-    low, high = options.sizes
-    if options.vectors is not None:
-        vectors = []
-        for number, words in _lines(options.vectors):
-            try:
-                vectors.append(_check_type(potential, _vector(words)))
-            except (argparse.ArgumentTypeError, ConverseError) as error:
-                raise ConverseError("%s: line %d: %s" % (options.vectors, number, error)) from None
-    elif options.farey is not None:
-        from ..orbits import farey
-
-        if len(options.farey) != potential.n:
-            raise ConverseError("the potential %s has %d angle%s: give --farey as many numbers"
-                                % (potential.name, potential.n, "s" * (potential.n - 1)))
-        mediants = farey.triangle(options.farey) if potential.n == 2 else farey.tree(*options.farey)
-        vectors = []
-        for mediant in mediants:
-            if mediant.q > high:
-                break
-            if mediant.q >= low:
-                vectors.append((mediant.p, mediant.q))
-    else:
-        rng, vectors, tries = random.Random(options.seed), [], 0
-        while len(vectors) < options.random:
-            q = rng.randint(low, high)
-            p = tuple(rng.randrange(q) for _ in range(potential.n))
-            tries += 1
-            if math.gcd(*p, q) == 1 or tries > 100 * options.random:
-                vectors.append((p, q))
-    if not vectors:
-        raise ConverseError("there are no rotation vectors; give others, or another --sizes")
-    return vectors
-
-
 def parser():
     p = Parser(prog=COMMAND, description=(
         "Finds periodic orbits of least action of the map x' = x + p', p' = p - eps grad V(x), "
@@ -180,8 +105,7 @@ def parser():
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     commands = p.add_subparsers(metavar="COMMAND", required=True)
 
-    made = [p, _find_parser(commands), _sweep_parser(commands)]
-    for each in made:                           # -12,16/21 and -0.02:0:0.01 are values
+    for each in p, _find_parser(commands):      # -12,16/21 and -0.02:0:0.01 are values
         each._negative_number_matcher = re.compile(r"-\.?\d")
     return p
 
@@ -210,37 +134,7 @@ def _find_parser(commands):
     find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
                       "the states: SVG, PNG or PDF by the name")
     find.add_argument("--no-caption", action="store_true", help="draw no caption")
-    find.set_defaults(run=find_states)
     return find
-
-
-def _sweep_parser(commands):
-    sweep = commands.add_parser(
-        "sweep", epilog=SWEEP, help="tabulate the orbits of many types",
-        description="Writes a table of the states of many types at each eps or, without eps, of "
-        "the onset of each type: where the first Lyapunov exponent of its orbit exceeds 1/q.  The "
-        "same command continues a sweep that was interrupted.")
-    sweep.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
-    sweep.add_argument("csv", metavar="FILE", help="the table; if it exists, the beginning of this "
-                       "same sweep")
-    sweep.add_argument("eps", metavar="EPS", type=_eps, nargs="*", default=[],
-                       help="the factor of the potential, or LOW:HIGH:STEP")
-    sweep.add_argument("--at", type=_value, metavar="NAME=VALUE", action="append", default=[],
-                       help=AT)
-    which = sweep.add_mutually_exclusive_group(required=True)
-    which.add_argument("--vectors", metavar="FILE", help="types from a file, a p0,p1/q in each "
-                       "line")
-    which.add_argument("--farey", metavar="W0,W1", type=_target, help="the mediants of the Farey "
-                       "triangles (one angle: intervals) that contain these numbers, exactly")
-    which.add_argument("--random", type=whole_number(1), metavar="N", help="N random types")
-    sweep.add_argument("--sizes", type=_sizes, default=SIZES, metavar="LOW:HIGH", help="of q, for "
-                       "--farey and --random (%d:%d)" % SIZES)
-    sweep.add_argument("--seed", type=whole_number(0), default=0, metavar="N",
-                       help="of --random (0)")
-    sweep.add_argument("--jobs", type=whole_number(1), metavar="N",
-                       help="work on N types at a time (default: one per core)")
-    sweep.set_defaults(run=sweep_types)
-    return sweep
 
 
 # ---- what is done
@@ -362,40 +256,14 @@ def find_states(options):
     return int(found.failed)
 
 
-def sweep_types(options):
-    potential = read_potential(options.potential, options.at)
-    vectors = vectors_of(options, potential)
-    for path in (options.potential, options.vectors):
-        if path is not None and os.path.exists(path) and files.same(path, options.csv):
-            raise ConverseError("the table would overwrite '%s'; name another file" % path)
-
-    from ..orbits.sweep import LOST, onsets, sweep
-
-    eps = [x for each in options.eps for x in each]
-    with ProgressLine() as line:
-        common = {"jobs": options.jobs, "file": options.csv,
-                  "progress": lambda *done: line(lambda: "%d of %d types" % done)}
-        table = sweep(potential, vectors, eps, **common) if eps else \
-            onsets(potential, vectors, **common)
-    lost = int((table["label"] == LOST).sum())
-    say("written: %s, %d types, %d rows%s\n" % (
-        plain(options.csv), len(vectors), len(table), ", %d of them lost" % lost if lost else ""))
-    return 1 if lost else 0
-
-
 def run(options):
     from converse import orbits
 
     orbits.PeriodicOrbit                        # or a line that says what is missing
-    return options.run(options)
+    return find_states(options)
 
 
-def interrupted(options):
-    return {find_states: "no table, points or figure is written",
-            sweep_types: "the same command continues it"}.get(options.run, "nothing was begun")
-
-
-main = command(COMMAND, parser, run, interrupted, run=None)
+main = command(COMMAND, parser, run, lambda options: "no table, points or figure is written")
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -11,11 +11,11 @@ map, a type or a number is not as described.
 
 try:
     from .minimax import Pair
+    from .onset import Onset, onset
     from .potential import Potential, ff, froeschle, poly, standard, trig
     from .proved import NotProved, ProvedOrbit, prove
     from .solver import Family, follow, straight
     from .state import PeriodicOrbit
-    from .sweep import Onset, onset, onsets, sweep
 except ImportError as _error:           # raised when a name is used: the command needs a line
     _MISSING = ("converse.orbits needs numpy and the C core (%s); pip install "
                 "'converse-kam[orbits]'" % _error)
@@ -28,5 +28,4 @@ except ImportError as _error:           # raised when a name is used: the comman
         raise ConverseError(_MISSING)
 
 __all__ = ["Family", "NotProved", "Onset", "Pair", "PeriodicOrbit", "Potential", "ProvedOrbit",
-           "ff", "follow", "froeschle", "onset", "onsets", "poly", "prove", "standard", "straight",
-           "sweep", "trig"]
+           "ff", "follow", "froeschle", "onset", "poly", "prove", "standard", "straight", "trig"]

@@ -11,8 +11,7 @@ from fractions import Fraction
 from flint import arb, arb_mat, ctx, fmpq, fmpz
 
 from .._native import lib
-from .limits import GUARD_BITS, POINTS_PER_POLL
-from .potential import look_up
+from .limits import GUARD_BITS
 
 
 def bits_of(places):
@@ -79,14 +78,6 @@ def norm(x):
 def square(v):
     """|v|^2 of a column."""
     return (v.transpose() * v)[0, 0]
-
-
-def points(start, stop, step=1):
-    """A range.  A thread that was told to end does so here."""
-    for i, j in enumerate(range(start, stop, step)):
-        if i % POINTS_PER_POLL == 0:
-            look_up()
-        yield j
 
 
 # ---- potentials: functions of a point, base + u with base a rational number and u without radius,
@@ -170,7 +161,7 @@ class Enclosure:
         self.potential, self.q, self.n = state.potential, state.q, state.potential.n
         self.eps, self.places = eps, None
         self.base = [[fmpq(*x.as_integer_ratio()) + fmpq(j * p % self.q, self.q)
-                      for x, p in zip(state.origin, state.p)] for j in points(0, self.q)]
+                      for x, p in zip(state.origin, state.p)] for j in range(self.q)]
         self.u = [arb_mat(self.n, 1, [arb(x) for x in row]) for row in state.u.tolist()]
 
     def evaluate(self, places):
@@ -184,7 +175,7 @@ class Enclosure:
         eps = ball(self.eps)
         two, radii, squares, action = unit(n, 2), unit(n, 0), arb(0), arb(0)
         self.force, self.beta = [], []
-        for j in points(0, q):
+        for j in range(q):
             here, after = u[j], u[j + 1 - q]
             value, *rest = self.local(self.base[j], here.entries())
             step = after - here
@@ -227,7 +218,7 @@ class Enclosure:
         self.begin(self.places)
         zero, shift = unit(self.n, 0), unit(self.n, shift)
         before, E, F, side = zero, zero, unit(self.n), arb_mat(self.n, 1)
-        for j in points(1, self.q + 1):
+        for j in range(1, self.q + 1):
             G = (self.beta[j % self.q] + shift - before).mid()
             if links is not None:
                 side = (before * side - force[j % self.q]).mid()
@@ -278,7 +269,7 @@ class Enclosure:
             side += F * (before * r)
         first = after = (pivot * side).mid()
         moves = []
-        for j in points(len(links) - 1, -1, -1):
+        for j in range(len(links) - 1, -1, -1):
             before, F, r = links[j]
             after = (before * (r + after + F.transpose() * first)).mid()
             moves.append(after)
@@ -318,7 +309,7 @@ class Enclosure:
         the radii are too large."""
         self.begin(self.places)
         s, shift, radii = [first], unit(self.n, shift), unit(self.n, 0)
-        for j in points(1, self.q + 1):
+        for j in range(1, self.q + 1):
             turned = inverse(s[-1])
             if turned is None:
                 return None

@@ -6,7 +6,7 @@ exponents are (1/q) log |l|, l the eigenvalues of D_{q-1} ... D_0.
 
 from flint import arb, arb_mat
 
-from .enclosure import ball, is_positive, lower, points, unit, upper
+from .enclosure import ball, is_positive, lower, unit, upper
 from .limits import MAX_CONES
 
 
@@ -32,7 +32,7 @@ def growth(chain, strict, away):
     # No cone closes.  If (trace)^2 < 4 det, the eigenvalues are complex, and their moduli equal;
     # anyway the larger row sum bounds them.
     product = unit(2)
-    for j in points(0, chain.q):
+    for j in range(chain.q):
         product = matrices[j] * product
     trace = product[0, 0] + product[1, 1]
     if trace * trace < 4 * det:
@@ -47,7 +47,7 @@ def _ends(x):
 
 def _det(matrices):
     det = arb(1)
-    for j in points(0, len(matrices)):
+    for j in range(len(matrices)):
         det *= matrices[j].det()
     return det
 
@@ -59,14 +59,14 @@ def _directions(s, squarings):
         return (x * (1 / max(map(abs, x.entries())))).mid()
 
     power = unit(2)
-    for j in points(0, len(s)):
+    for j in range(len(s)):
         power = scaled(s[j] * power)
     for _ in range(squarings):
         power = scaled(power * power)
     v = max((arb_mat(2, 1, list(column)) for column in zip(*power.tolist())),
             key=lambda v: float(abs(v[0, 0]) + abs(v[1, 0])))
     directions = []
-    for j in points(0, len(s)):
+    for j in range(len(s)):
         directions.append(v)
         v = scaled(s[j] * v)
     return directions
@@ -83,7 +83,7 @@ def _in_frames(s, t, directions):
     frames = [frame(v) for v in directions]
     frames.append(frames[0])
     matrices = []
-    for j in points(0, len(s)):
+    for j in range(len(s)):
         wide = arb(0, (t[j] - s[j]).trace())
         D = s[j] + arb_mat(2, 2, [wide] * 4)
         after = frames[j + 1]
@@ -102,7 +102,7 @@ def _of_cone(matrices):
         vanish.
         (kappa has all digits: a radius has nine, and the cone may shrink by less.)"""
         low = high = arb(1)
-        for j in points(0, len(matrices)):
+        for j in range(len(matrices)):
             a, b, c, d = matrices[j].entries()
             across = abs(b) * kappa
             if not a > across:

@@ -35,7 +35,6 @@ MAX_ONSET_GRADIENT = 1e-12      # Before break-up rounding hides smaller gradien
 MAX_ONSET_STEPS = 3000          # After these steps of the solver a smaller step of eps is tried.
 MAX_ONSET_HALVINGS = 10         # The step of eps is halved so often.
 ONSET_TIMES_CURVATURE = 0.03, 0.0006, 4.0   # Step, width and top of onset(), times the curvature.
-TASKS_PER_WORKER = 2            # One is worked on, the other waits.
 
 # ---- passes
 
@@ -66,4 +65,3 @@ SHOWN_PLACES = 20               # Places of an interval in a report.
 EXPONENT_PLACES = 45            # Places of an exponent.
 GUARD_BITS = 64                 # Bits of midpoints beyond the decimal places.
 MAX_CONES = 40                  # Cones that are tried for one exponent.
-POINTS_PER_POLL = 256           # Points between two looks for Ctrl-C.

@@ -287,20 +287,7 @@ class Fourier(Potential):
         return tuple(map(float, best[0]))
 
 
-# Of each thread: `error`, the exception that ended its C; `stop`, an Event that ends the thread.
-_mine = threading.local()
-
-
-def obey(stop):
-    """This thread ends its work soon after the Event stop is set."""
-    _mine.stop = stop
-
-
-def look_up():
-    """Ends the work of a thread that was told to end, as Ctrl-C ends the main thread's."""
-    stop = getattr(_mine, "stop", None)
-    if stop is not None and stop.is_set():
-        raise KeyboardInterrupt
+_mine = threading.local()               # of each thread `error`, the exception that ended its C
 
 
 def _interrupted(kind, error, trace):
@@ -310,7 +297,6 @@ def _interrupted(kind, error, trace):
 @ffi.def_extern(error=1, onerror=_interrupted)
 def cv_python_interrupts():
     """Signals are looked for when Python begins to run, and Ctrl-C is raised then."""
-    look_up()
     return 0
 
 

@@ -15,7 +15,7 @@ from flint import arb, arb_mat
 
 from ..model.balls import precision
 from ..model.exact import Interval, rounded
-from .enclosure import Enclosure, ball, lower, points, square, upper
+from .enclosure import Enclosure, ball, lower, square, upper
 from .exponents import growth
 from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
                      MAX_STIFFNESS, SHOWN_PLACES)
@@ -195,7 +195,7 @@ class _Pass:
                 raise TooFewPlaces("with one coordinate held it is too flat")
         w = self.column()
         left, size = arb(0), arb(0)             # of |P w - e|^2 and |w|^2
-        for j in points(0, exact.q):
+        for j in range(exact.q):
             left += square(exact.beta[j] * w[j] - w[j - 1] - w[j + 1 - exact.q] - self.e[j])
             size += square(w[j])
         off = left.upper().sqrt() / ball(m)

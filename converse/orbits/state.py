@@ -13,7 +13,7 @@ from ..model.dynamics import jacobians
 from ..storage.files import ConverseError
 from .limits import (EIGENVALUE_ROUNDING, EIGENVALUE_STEP, MAX_DISPLACEMENT, MAX_PIVOTS, MAX_Q,
                      MAX_SHADOW, NULL_EIGENVALUE, SHADOW_REACH)
-from .potential import Potential, address, done, finite, known, look_up, whole
+from .potential import Potential, address, done, finite, known, whole
 from .stability import Monodromy, beyond, log_excesses, log_multipliers, product
 
 if TYPE_CHECKING:
@@ -589,7 +589,6 @@ def descended(state, eps, tol, max_steps, held=None):
     u, base = np.zeros((q, 2)), np.zeros((q, 2))
     u[:, :n], base[:, :n] = np.roll(state.u, -first, 0), np.roll(state.base, -first, 0)
     how = ffi.new("cv_relaxed *")
-    look_up()
     code = done(lib.cv_relax(state.potential.native, q, eps, address(base), address(u), axis, tol,
                              max_steps, how))
     return code, how, np.roll(u[:, :n], first, 0)

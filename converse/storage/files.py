@@ -200,36 +200,6 @@ def read_text(path, what, damaged):
         raise ConverseError("%s%s; use an intact copy or start anew" % (path, damaged)) from None
 
 
-class AppendedFile:
-    """A file that begins with a text, which replaces its older contents, and grows by whole texts.
-    Only the last text can be incomplete, if the program is killed or the disk is full."""
-
-    def __init__(self, path, text):
-        self.path = path
-        with self._failures_told():
-            self.stream = open(path, "r+b" if os.path.exists(path) else "wb", buffering=0)
-            self.stream.truncate(len(text.encode("utf-8")))
-        self.append(text)
-
-    def append(self, text):
-        """ConverseError: the file cannot be written."""
-        data = text.encode("utf-8")
-        with self._failures_told():
-            while data:                 # a disk that is almost full takes a part
-                data = data[self.stream.write(data):]
-
-    def close(self):
-        self.stream.close()
-
-    @contextlib.contextmanager
-    def _failures_told(self):
-        try:
-            yield
-        except OSError as error:
-            raise ConverseError("%s: cannot be written (%s); what it has can be continued"
-                                % (self.path, reason(error))) from None
-
-
 class Lock(Resource):
     """A context in which no other run writes a file that this one writes again and again.
 

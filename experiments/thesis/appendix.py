@@ -3,10 +3,10 @@
 import itertools
 from fractions import Fraction
 
+import farey
 import numpy as np
 
 from converse.draw.plot import DARK, VERMILLION
-from converse.orbits import farey
 
 from . import shared
 

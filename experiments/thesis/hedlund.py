@@ -4,10 +4,10 @@ import itertools
 import math
 from fractions import Fraction
 
+import farey
 import numpy as np
 
 from converse.draw.plot import BLUE, DARK, GREY, VERMILLION
-from converse.orbits import farey
 from converse.orbits.pictures import angles, momenta, quality, square
 from converse.orbits.potential import ff, poly, trig
 from converse.orbits.state import vector_words

@@ -3,7 +3,6 @@
 import io
 import math
 import re
-import signal
 import subprocess
 import sys
 from fractions import Fraction
@@ -14,12 +13,11 @@ from matplotlib.figure import Figure
 
 from converse import orbits
 from converse.commands import orbits as cli
-from converse.orbits import farey, pictures
+from converse.orbits import pictures
 from converse.orbits.solver import newton
-from converse.orbits.sweep import LOST, ONSET_COLUMNS
 from converse.storage.files import ConverseError
 
-from moments import PATIENCE, SWEEP_HELD, wait_until
+from moments import PATIENCE
 
 SMALL = "65,86/114"
 COMMAND = [sys.executable, "-m", "converse.commands.orbits"]
@@ -32,11 +30,6 @@ def run(capfd):
         status = cli.main([str(argument) for argument in arguments])
         return (status, *capfd.readouterr())
     return run
-
-
-def read(path):
-    """The table in a file."""
-    return sys.modules[orbits.sweep.__module__]._table(path.read_text("utf-8"))
 
 
 def one_line(err):
@@ -194,10 +187,6 @@ def test_a_potential_in_a_file(run, root, tmp_path):
                            "--at", "b=1/7", "--at", "c=-0.2")
     assert (status, err) == (0, "") and (
         "V(y) : -1/10 sin(y0) - 1/7 sin(y1) + 1/5 sin(y0 + y1)\n" in out)
-    table = tmp_path / "table.csv"
-    assert run("sweep", path, table, "0.5", "--at", "K=1", "--random", "2", "--sizes",
-               "5:9")[0] == 0
-    assert set(read(table)["potential"]) == {"standard, K = 1"}
 
 
 @pytest.mark.parametrize("text", ["1 0 0 -1/2\n0 1 0 -0.5\n", "2 0.25 -1\n"])
@@ -219,61 +208,10 @@ def test_proof(run):
     assert (status, err) == (1, "") and "\nNot proved : " in out
 
 
-# ---- sweep
-
-def test_sweeps(run, tmp_path):
-    """By vectors, by Farey triangles and at random: the rows of the API, twice the same bytes."""
-    vectors = tmp_path / "vectors.txt"
-    vectors.write_text("5,7/9\n(3, 4)/5   # with its name\n\n12,16/21\n")
-    listed = [((5, 7), 9), ((3, 4), 5), ((12, 16), 21)]
-    w = "0.5698402909980532", "0.7548776662466927"
-    mediants = [(m.p, m.q) for m, _ in zip(farey.triangle(w), range(40)) if 20 <= m.q <= 60]
-    for which, expected in ((("--vectors", vectors), listed),
-                            (("--farey", ",".join(w), "--sizes", "20:60"), mediants)):
-        path = tmp_path / ("%s.csv" % which[0])
-        status, out, err = run("sweep", "trig", path, "0.01", *which)
-        assert (status, err) == (0, "")
-        assert out == "written: %s, %d types, %d rows\n" % (path, len(expected), len(expected))
-        table = read(path)
-        assert repr(table.tolist()) == repr(orbits.sweep(orbits.trig, expected, [0.01]).tolist())
-    assert len(mediants) > 3
-    paths = [tmp_path / name for name in "abc"]
-    for path, seed, jobs in zip(paths, (5, 5, 6), (1, 2, 2)):
-        assert run("sweep", "standard", path, "--random", "4", "--sizes=20:40", "--seed", seed,
-                   "--jobs", jobs)[0] == 0
-    assert paths[0].read_bytes() == paths[1].read_bytes() != paths[2].read_bytes()
-    table = read(paths[0])
-    assert table.dtype.names == ONSET_COLUMNS and len(table) == 4
-    assert ((20 <= table["q"]) & (table["q"] <= 40)).all()
-    assert (np.gcd(table["p"][:, 0], table["q"]) == 1).all()
-    assert (table["eps_above"] > table["eps_below"]).all()
-
-
-def test_a_sweep_is_continued_and_no_other_is(run, tmp_path):
-    path = tmp_path / "table.csv"
-    arguments = "sweep", "trig", path, "0.01", "--random", "3", "--sizes", "20:30"
-    assert run(*arguments)[0] == 0
-    whole = path.read_bytes()
-    path.write_bytes(whole[:len(whole) // 2])
-    assert run(*arguments)[0] == 0 and path.read_bytes() == whole
-    status, out, err = run(*arguments, "--seed", "1")
-    assert (status, out) == (2, "") and one_line(err) and "not the beginning of this sweep" in err
-    assert path.read_bytes() == whole
-
-
-def test_lost_types_end_with_status_1(run, tmp_path, monkeypatch):
-    def loses(*_, **__):
-        raise ConverseError("no orbit")
-    monkeypatch.setattr(sys.modules[orbits.sweep.__module__], "onset", loses)
-    status, out, err = run("sweep", "trig", tmp_path / "x.csv", "--random", "2", "--sizes", "9:9")
-    assert (status, err) == (1, "") and out.endswith("2 types, 2 rows, 2 of them lost\n")
-    assert (read(tmp_path / "x.csv")["label"] == LOST).all()
-
-
 # ---- help
 
 def test_help_and_version(run):
-    for command in ((), ("find",), ("sweep",)):
+    for command in ((), ("find",)):
         status, out, err = run(*command, "--help")
         assert (status, err) == (0, "") and "\nexit status:\n  0 " in out
     assert run("--version")[1].startswith("converse-orbits ")
@@ -293,8 +231,6 @@ def test_help_and_version(run):
     *[(["find", "trig", SMALL, bad], "is neither a number below 10^9") for bad in (
         "x", "1e10", "nan", "inf", "1e400", "1e9999999999", "1/0", "1:2", "1:2:3:4", "", "1_0")],
     (["find", "trig", SMALL, "1e6"], "too far to be followed"),
-    (["sweep", "trig", "DIR/x.csv", "1e6", "--random", "1", "--sizes", "5:9"],
-     "too far to be foll"),
     (["find", "trig", "5,7/999999999", "0.01"], "from 1 to 10000000"),
     *[(["find", "trig", SMALL, bad], "range of no values") for bad in (
         "1:2:0", "2:1:0.1", "0:1:1e-9")],
@@ -312,26 +248,7 @@ def test_help_and_version(run):
     (["find", "trig", SMALL, "0.01", "--at", "K=1"], "trig has no parameters"),
     (["find", "DIR/terms.json", SMALL, "0.01", "--at", "K=1"], "there is no parameter K"),
     (["find", "DIR/terms.json", SMALL, "0.01", "--at", "K"], "write NAME=NUMBER"),
-    (["sweep", "trig", "DIR/x.csv", "0.01"], "required"),
-    (["sweep", "trig", "DIR/x.csv", "--random", "1", "--farey", "0.1,0.2"], "not allowed"),
-    (["sweep", "trig", "DIR/x.csv", "--random", "1", "--sizes", "3"], "LOW:HIGH"),
-    (["sweep", "trig", "DIR/x.csv", "--random", "1", "--sizes", "9:3"], "LOW:HIGH"),
-    (["sweep", "trig", "DIR/x.csv", "--random", "1", "--sizes", "0:3"], "LOW:HIGH"),
-    (["sweep", "trig", "DIR/x.csv", "--random", "1", "--jobs", "0"], "whole number"),
-    (["sweep", "trig", "DIR/x.csv", "--farey", "0.5"], "as many numbers"),
-    (["sweep", "standard", "DIR/x.csv", "--farey", "0.5,0.5"], "as many numbers"),
-    *[(["sweep", "trig", "DIR/x.csv", "--farey", bad], "between 0 and 1") for bad in (
-        "x,y", "0,0.5", "0.5,1.5", "0.1,0.2,0.3", "1/0,0.5")],
-    (["sweep", "trig", "DIR/x.csv", "--farey", "0.51,0.52", "--sizes", "5000:5001"], "no rotation"),
-    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/none"], "; name a readable file"),
-    (["sweep"], "required: POTENTIAL, FILE; see"),
     (["find", "trig", "5,7/999999999", "0.01"], "whole number q from 1 to 10000000, not"),
-    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/terms"], "line 1: '1 0 0 1' is not a type"),
-    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/one"], "line 2: the potential trig has two"),
-    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/empty"], "no rotation vectors"),
-    (["sweep", "trig", "DIR/two", "--vectors", "DIR/two"], "overwrite"),
-    (["sweep", "trig", "DIR/terms", "--random", "1"], "columns are others"),
-    (["sweep", "trig", "DIR", "--random", "1"], "is a directory"),
     (["figures", "DIR"], "invalid choice"),
 ])
 def test_bad_usage(run, tmp_path, arguments, words):
@@ -339,7 +256,7 @@ def test_bad_usage(run, tmp_path, arguments, words):
     (tmp_path / "terms.json").write_text('{"harmonics": [{"k": [1, 0], "amplitude": 1}]}')
     (tmp_path / "one").write_text("1,2/3\n1/3\n")
     (tmp_path / "other.csv").write_text("potential,mine\n")
-    orbits.sweep(orbits.standard, [((1,), 3)], [0.5], file=tmp_path / "sweep.csv")
+    (tmp_path / "sweep.csv").write_text("potential,p,q\nstandard,1,3\n")
     (tmp_path / "other.svg").write_text("<?xml version='1.0'?><svg/>\n")
     (tmp_path / "two").write_text("1,2/3\n")
     (tmp_path / "empty").write_text("# nothing\n")
@@ -365,7 +282,7 @@ def test_a_bad_potential(run, tmp_path, text, words):
 
 
 @pytest.mark.parametrize("module, arguments", [
-    ("numpy", ["find", "trig", SMALL, "0.01"]), ("numpy", ["sweep", "trig", "x", "--random", "1"]),
+    ("numpy", ["find", "trig", SMALL, "0.01"]),
     ("converse._native", ["find", "trig", SMALL, "0.01"]),
     ("matplotlib", ["find", "trig", SMALL, "0.01", "-g", "x.svg"])])
 def test_what_is_missing_is_said(tmp_path, module, arguments):
@@ -378,30 +295,6 @@ def test_what_is_missing_is_said(tmp_path, module, arguments):
     assert module.split(".")[0] in result.stderr
     assert "pip install" in result.stderr or "run make" in result.stderr
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_sweep_that_a_signal_ends_is_continued(tmp_path, number):
-    path, other = tmp_path / "table.csv", tmp_path / "whole.csv"
-    common = "0.004:0.012:0.002", "--random", "40", "--sizes", "120:160", "--jobs", "2"
-    code = SWEEP_HELD + "from converse.commands.orbits import main\nsys.exit(main())"
-    with subprocess.Popen([sys.executable, "-c", code, "10", "sweep", "trig", path, *common],
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        try:
-            wait_until(lambda: path.exists() and path.read_bytes().count(b"\n") > 50, process)
-            process.send_signal(number)
-            out, err = process.communicate(timeout=PATIENCE)
-        finally:
-            process.kill()
-    assert (process.returncode, out) == (128 + number, "") and one_line(err)
-    assert err == "converse-orbits: interrupted; the same command continues it\n"
-    half = path.read_bytes()
-    for file in path, other:
-        subprocess.run([*COMMAND, "sweep", "trig", file, *common], check=True, timeout=PATIENCE,
-                       stdout=subprocess.DEVNULL)
-    assert half.count(b"\n") == 51 and other.read_bytes().startswith(half)
-    assert path.read_bytes() == other.read_bytes() != half
-    assert not list(tmp_path.glob("*.lock"))
 
 
 def test_a_closed_pipe():

@@ -9,11 +9,11 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ET
 
+import farey
 import numpy as np
 import pytest
 
 from converse import ConverseError, orbits
-from converse.orbits import farey
 
 from truth import TORTURE
 

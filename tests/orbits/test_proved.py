@@ -22,7 +22,7 @@ from sums import fourier
 
 from converse import ConverseError, orbits
 from converse.model.balls import precision
-from converse.orbits import enclosure, potential, proved
+from converse.orbits import enclosure, proved
 from converse.orbits.enclosure import Enclosure
 from converse.orbits.exponents import growth
 from converse.orbits.proved import NotProved, prove
@@ -457,49 +457,27 @@ def test_flat():
 # ---- Ctrl-C
 
 @pytest.mark.parametrize("name, p, q", [("standard", (317,), 512), ("trig", (5, 7), 9)])
-def test_ctrl_c_is_noticed_everywhere(name, p, q, monkeypatch):
-    """Wherever it is looked for, which is once in 256 points; and all is as if nothing had been."""
+def test_ctrl_c_leaves_nothing_behind(name, p, q, monkeypatch):
+    """Whatever round through the points it strikes in, all is as if nothing had been."""
     state = orbits.follow(getattr(orbits, name), p, q, [1.5 if len(p) == 1 else 0.03])[0]
     asked, last = 0, None
 
-    def strike():
+    def strike(*_):
         nonlocal asked
         asked += 1
         if asked == last:
             signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr(enclosure, "look_up", strike)
     monkeypatch.setattr(ctx, "prec", 77)
-    orbit = prove(state)
-    assert ctx.prec == 77 and asked >= 15 * max(1, q // 256)
+    orbit = prove(state, progress=strike)
+    assert ctx.prec == 77 and asked >= 12
     for last in range(1, asked + 1):
         asked = 0
         with pytest.raises(KeyboardInterrupt):
-            prove(state)
+            prove(state, progress=strike)
         assert (ctx.prec, asked) == (77, last)
     last = None
     assert prove(state).report() == orbit.report()
-
-
-def test_a_thread_ends_when_it_is_told():
-    state = orbits.follow(orbits.standard, (317,), 512, [1.5])[0]
-    begun, stop, ended = threading.Event(), threading.Event(), []
-
-    def run():
-        potential.obey(stop)
-        begun.set()
-        try:
-            prove(state, 900)
-        except KeyboardInterrupt:
-            ended.append(True)
-
-    with precision():                           # it waits for its turn
-        thread = threading.Thread(target=run)
-        thread.start()
-        begun.wait()
-        stop.set()
-    thread.join()
-    assert ended == [True] and prove(state).label == "proved"
 
 
 def test_proofs_side_by_side():

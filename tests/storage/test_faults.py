@@ -15,7 +15,6 @@ import sys
 import termios
 import time
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
@@ -426,16 +425,6 @@ def test_a_file_is_on_the_disk_before_it_replaces_another(tmp_path, monkeypatch)
         monkeypatch.setattr(os, name, call)
     files.write(tmp_path / "a", b"x")
     assert done == ["fsync", "replace"]
-
-
-def test_a_text_that_the_disk_takes_in_parts_is_appended_whole(tmp_path):
-    """One call of write may take fewer bytes than it is given."""
-    file = files.AppendedFile(tmp_path / "a", "")
-    stream = file.stream
-    file.stream = SimpleNamespace(write=lambda data: stream.write(data[:2]), close=stream.close)
-    file.append("a text")
-    file.close()
-    assert (tmp_path / "a").read_text() == "a text"
 
 
 @pytest.mark.parametrize("mask, mode", [(0o077, 0o600), (0o022, 0o644)])

@@ -7,8 +7,8 @@ decide otherwise, is refused.
 
 from typing import NamedTuple
 
-from ..model.exact import exact
-from ..storage.files import plain
+from converse.model.exact import exact
+from converse.storage.files import plain
 
 
 class Mediant(NamedTuple):

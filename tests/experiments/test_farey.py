@@ -3,11 +3,10 @@
 from fractions import Fraction
 from itertools import islice
 
+import farey
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from converse.orbits import farey
 
 PADOVAN = [2, 2, 3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 49, 65, 86, 114, 151, 200, 265, 351, 465, 616,
            816, 1081, 1432, 1897, 2513, 3329, 4410, 5842]
