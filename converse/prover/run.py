@@ -23,7 +23,7 @@ from .orbit_length import longest
 from .proof import Proof, Tree
 from .resume import continued, counted
 from .settings import Settings
-from .starts import plan
+from .starts import MAX_PROOF_LEAVES, has_width, plan
 from .tree_search import OLD, TreeSearch
 from .workers import LOOK_SECONDS, WorkerPool, check_options
 
@@ -156,7 +156,7 @@ class _Run:
         self.examined = self.share = 0.0    # before the tree that is grown now; of all, told last
         self.number, self.search = 0, None      # of that tree, and its search
         self.counts = before.counts             # when that began
-        self.tried = False                      # were other starting points looked for?
+        self.tried = set()                      # trees for which others were looked for
         self.longest = None                     # the most points of an orbit, when that is known
 
     def run(self):
@@ -230,19 +230,25 @@ class _Run:
     # ---- other starting points
 
     def _is_hard(self):
-        """Did a prism of the first tree need LONG points?  Then other starting points are looked
-        for before the tree is finished.  The answer depends on prisms and not on time.  For a
-        single map of one angle, all orbits are long near the last circle."""
+        """Did a prism of the first tree need LONG points?  Or is a further tree, of a single value,
+        larger than those that show starting points to be good ones?  Then other starting points are
+        looked for before the tree is finished.  The answer depends on prisms and not on time.  For
+        a single map of one angle, all orbits are long near the last circle."""
+        problem = self._tree.problem
         counts = self.proof.counts if self.search is None else self.search.counts
-        return counts.max_NTsteps >= LONG and self._may_link() and self.number == 0 and \
-            not (self._tree.problem.is_flat and not self._tree.problem.parts)
+        if self.number == 0:
+            hard = counts.max_NTsteps >= LONG and not (problem.is_flat and not problem.parts)
+        else:                           # what is searched now is counted without the other trees
+            proved = counts.proved if self.search else self._tree.text.count("P")
+            hard = proved > MAX_PROOF_LEAVES and not has_width(problem)
+        return hard and self._may_link()
 
     def _may_link(self):
         """May the tree be linked?  Other points are looked for once, since a second look would try
         the same points.  Where the core skips mirror images, the originals must be proved, and
         not linked."""
         problem, settings = self._tree.problem, self.proof.settings
-        return not (self.tried and self.number == 0) and \
+        return self.number not in self.tried and \
             settings.method == "loewner" and not settings.stubborn and \
             problem.factor is None and not skips(problem, self._tree.xstar) and \
             not tree.count_linked(self._tree.text)
@@ -252,7 +258,8 @@ class _Run:
         problem = self._tree.problem
         if not self._may_link():
             return False
-        undecided, self.tried = not self._is_hard(), True
+        undecided = self.number > 0 or not self._is_hard()
+        self.tried.add(self.number)
 
         def seconds_left():             # asked for again and again meanwhile
             workers.check()

@@ -89,7 +89,7 @@ def _look(problem, depth, xstar, survey):
     is LOOK_DEPTH, and greater as long as the area of the clusters is large and is halved.
     (None, []) if the tree is too large, or time was up."""
     best, covered, cuts = (None, []), inf, LOOK_DEPTH
-    enough = MAX_MOVING_LEAVES if _has_width(problem) else MAX_LOOK_LEAVES
+    enough = MAX_MOVING_LEAVES if has_width(problem) else MAX_LOOK_LEAVES
     while cuts <= depth and (best[0] or _shrinks(problem, xstar, survey)):
         grown = _whole(problem, xstar, cuts, survey, MAX_LOOK_POINTS)
         if grown is None:
@@ -173,7 +173,7 @@ class _Image:
     def shifts(self, point):
         """How the region over this point is to move with the parameters; () if there are none.
         Half of a region does not move along v1."""
-        grown = self.proof(point) if _has_width(self.problem) else None
+        grown = self.proof(point) if has_width(self.problem) else None
         if grown is None:
             return ()
         part = self.part(point)
@@ -246,7 +246,7 @@ def _moved(point, step, way):
     return tuple(round(a + step * b, 6) for a, b in zip(point, way))
 
 
-def _has_width(problem):
+def has_width(problem):
     return any(map(any, problem.parts))
 
 

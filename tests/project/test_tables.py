@@ -213,6 +213,7 @@ def test_the_portrait_shows_the_share_of_its_table():
     ("inputs.md", "| `harmonics` | 1 to %d of them |" % maps.MOST_WAVES),
     ("inputs.md", "two integers up to %d" % maps.HIGHEST),
     ("method.md", "needs orbits of %d points" % run.LONG),
+    ("method.md", "the search has proved {:,} prisms".format(run.MAX_PROOF_LEAVES)),
     ("trust.md", "| {:,} points each way |".format(limits.MAX_SITES)),
 ])
 def test_limits_of_the_program(page, text):

@@ -396,6 +396,28 @@ def test_undecided_stays_undecided(easily):
     assert not proof.no_tori and proof.conclusion == "undecided"
 
 
+@pytest.mark.slow
+def test_a_part_that_grows_too_large_is_linked_further(linked, easily, monkeypatch):
+    """It is looked at once, and the proof does not depend on the number of workers."""
+    asked, plan = [], run.plan
+
+    def noted(*arguments):
+        found = plan(*arguments)
+        asked.append((arguments[2], found is not None))
+        return found
+
+    monkeypatch.setattr(run, "plan", noted)
+    most = max(part.text.count("P") for part in linked.parts)
+    monkeypatch.setattr(run, "MAX_PROOF_LEAVES", most)
+    assert timeless(prove(line("0.015"), method="loewner")) == timeless(linked)
+    assert asked.pop() == (linked.xstar, True) and not asked
+    monkeypatch.setattr(run, "MAX_PROOF_LEAVES", 40)
+    proof, same = (prove(line("0.015"), method="loewner", jobs=jobs) for jobs in (1, 3))
+    assert proof.verify() and len(proof.parts) == 10
+    assert timeless(proof) == timeless(same) and asked[7:] == asked[:7]
+    assert [found for _, found in asked[:7]] == [True] * 4 + [False] * 3
+
+
 @pytest.mark.parametrize("problem,x,grown", [
     (Problem(SymplecticMap([(1, 0)], ["0"])), "0.534071", [12, 16]),
     (Problem(MuldoonMap("0.5", 0, 0)), "1.570796", [12, 16]), (line("0.005"), "0.858028", [12, 16]),
