@@ -18,6 +18,7 @@ from collections import Counter
 from fractions import Fraction
 
 import numpy as np
+from pairs import pairs as closest
 
 from converse import ConverseError, orbits
 from converse.draw import plot
@@ -36,7 +37,7 @@ def exact_pairs(proved):
     momenta are differences of displacements."""
     state, u = proved.state, proved.displacements
     found = []
-    for i, j in zip(*map(np.ndarray.tolist, state.pairs(CANDIDATES)[:2])):
+    for i, j in zip(*map(np.ndarray.tolist, closest(state, CANDIDATES)[:2])):
         dx = [Fraction((i - j) * p % state.q, state.q) + a - b
               for p, a, b in zip(state.p, u[i], u[j])]
         dp = [a - b - c + d for a, b, c, d in zip(u[i], u[i - 1], u[j], u[j - 1])]
@@ -55,12 +56,12 @@ def measure(kind, eps, digits):
     """A state and its closest pairs; printed, what is said of them."""
     state = orbits.follow(orbits.trig, *kind, [eps])[0]
     if digits is None:
-        pairs = state.pairs(COUNT)
+        pairs = closest(state, COUNT)
         print("(%d, %d)/%d, eps %g: in doubles, shadow %.0e"
               % (*state.p, state.q, eps, state.shadow))
     else:
         proved = orbits.prove(state, digits)
-        pairs, doubles = exact_pairs(proved), state.pairs(COUNT)
+        pairs, doubles = exact_pairs(proved), closest(state, COUNT)
         print("(%d, %d)/%d, eps %g: proved, radius %.0e, %.0e from the doubles, whose largest L is "
               "%.4g"
               % (*state.p, state.q, eps, proved.radius, proved.moved,

@@ -11,7 +11,6 @@ from .proved import ProvedOrbit, distances
 FEW = 300                               # points that are drawn larger
 MOST_STATES = 40                        # in a picture
 WIDTH, HEIGHT = 6.2, 3.25               # of the picture of a state, in inches
-LOST = 1e-13                            # distances below are rounding
 PLOTTED = {                             # The columns of Family.plot, with the names of their axes.
     "action": "action per point less $|p/q|^2/2$",
     "exponents": "Lyapunov exponents",
@@ -61,20 +60,6 @@ def exponent_text(state, exponent, digits):
     """An exponent to that number of digits; only a bound if doubles do not tell it from 0."""
     least = 2 / max(MAX_PIVOTS, 5 * state.q)
     return "below %.0e" % least if exponent < least else "%.*g" % (digits, exponent)
-
-
-def coinciding(state):
-    """How many points have another one nearer than doubles can tell."""
-    x = state.turns[np.argsort(state.turns[:, 0])]
-    near = np.zeros(len(x), bool)
-    for shift in range(1, len(x)):
-        step = np.roll(x, -shift, axis=0) - x
-        step = abs(step - np.rint(step))
-        if not (step[:, 0] < LOST).any():               # nor with a larger shift
-            break
-        close = (step < LOST).all(axis=1)
-        near |= close | np.roll(close, shift)
-    return np.count_nonzero(near)
 
 
 # ---- one state
@@ -144,7 +129,7 @@ def rows(page, shown, more=None):
     """Draws a row of panels for each of some states or proved orbits, with its kind and measures in
     the title, and returns a caption for all of them.  more(state) adds words to the title of
     each."""
-    potential, lost = drawn(shown[0]).potential, []
+    potential = drawn(shown[0]).potential
     grid = page.subplots(len(shown), potential.n, squeeze=False, gridspec_kw={"hspace": 0.42})
     for number, (panels, one) in enumerate(zip(grid, shown)):
         state = drawn(one)
@@ -162,18 +147,11 @@ def rows(page, shown, more=None):
                 lines[0] = "(%s)  %s" % (letter, lines[0])
             lines.append("momenta up to %.3f from the cross" % away
                          + ("; " + more(state) if more else ""))
-            count = coinciding(state)
-            if count:
-                lost.append("%d points" % count + " of (%s)" % letter * (len(shown) > 1))
         panels[0].set_title("\n".join(lines), loc="left")
     if potential.n == 1:
         return ""
-    words = "Left the angles, right the momenta, the cross at the rotation vector%s." % (
+    return "Left the angles, right the momenta, the cross at the rotation vector%s." % (
         "" if potential.period == 1 else " times 2 pi")
-    if lost:
-        words += "  Doubles cannot tell %s from another one (nearer than %g)." % (
-            " and ".join(lost), LOST)
-    return words
 
 
 def states_picture(states, kind="svg", caption=True):

@@ -37,46 +37,6 @@ def _fixed(array):
     return array
 
 
-class Pairs(NamedTuple):
-    """The closest pairs of points, closest first: their indices i and j, the distance |dx| of the
-    angles on the torus, and the distance |dp| of the momenta, in the units of the map; arrays of
-    one length."""
-
-    i: np.ndarray
-    j: np.ndarray
-    distance: np.ndarray
-    momentum: np.ndarray
-
-
-def closest_pairs(x, count):
-    """The `count` closest pairs of points x (q, n) on the torus: indices i, j and distances, the
-    closest first.
-
-    In the order of the first angle each point is compared with its next, second, ... neighbour to
-    the right, round the torus, until that angle alone is farther than the widest pair kept.  Each
-    pair is met from the end that has the other within half a turn to its right."""
-    x = x - np.floor(x)
-    order = np.argsort(x[:, 0], kind="stable")
-    x, q = x[order], len(x)
-    i, j, square = np.zeros(0, int), np.zeros(0, int), np.zeros(0)
-    for offset in range(1, q if count else 1):
-        left = np.arange(q)
-        right = (left + offset) % q
-        gap = x[right, 0] - x[left, 0] + (right < left)
-        widest = square.max() if len(square) == count else 1.0
-        near = (gap * gap <= widest) & ((gap < 0.5) | ((gap == 0.5) & (left < right)))
-        if not near.any():
-            break
-        left, right = left[near], right[near]
-        away = x[right] - x[left]
-        i, j = np.append(i, left), np.append(j, right)
-        square = np.append(square, ((away - np.rint(away)) ** 2).sum(1))
-        kept = np.argpartition(square, count - 1)[:count] if len(square) > count else slice(None)
-        i, j, square = i[kept], j[kept], square[kept]
-    nearest = np.argsort(square, kind="stable")
-    return order[i[nearest]], order[j[nearest]], np.sqrt(square[nearest])
-
-
 class Gaps(NamedTuple):
     """The gaps of an orbit of one angle on the circle, widest first: from point i up to point j,
     which is its neighbour; the width; and x_i, where the gap begins, in the units of the map."""
@@ -406,25 +366,6 @@ class PeriodicOrbit:
         return Deviation(*(self.potential.period * sqrt(float(((self.u - c) ** 2).sum(1).max()))
                            for c in (self.u[0], 0.0)))
 
-    def pairs(self, count: int = 800) -> Pairs:
-        """The pairs of points with the closest angles on the torus.
-
-        Parameters
-        ----------
-        count : int
-            How many at most.
-
-        Returns
-        -------
-        Pairs
-            Arrays i, j, distance and momentum, closest first: the indices of two points, and the
-            distances of their angles and of their momenta.
-        """
-        count = min(whole("count", count, 0), self.q * (self.q - 1) // 2)
-        i, j, distance = closest_pairs(self.turns, count)
-        momentum = np.sqrt(((self.momenta[i] - self.momenta[j]) ** 2).sum(1))
-        return Pairs(i, j, self.potential.period * distance, momentum)
-
     def gaps(self, count: Optional[int] = None) -> Gaps:
         """The gaps between neighbouring points on the circle, widest first; gaps of one width in
         the order of x.
@@ -446,7 +387,7 @@ class PeriodicOrbit:
         """
         if self.potential.n != 1:
             raise ValueError("gaps are those of an orbit on a circle; with two angles nothing lies "
-                             "between two points: see state.pairs() and the figure")
+                             "between two points")
         count = self.q if count is None else whole("count", count, 0)
         x = self.x[:, 0]
         i = np.argsort(x, kind="stable")

@@ -1,10 +1,10 @@
 """Figures of sections 2.2 to 2.4: potentials, states, their exponents and closest pairs."""
 
 import numpy as np
+from pairs import pairs as closest
 
 from converse.draw.plot import BLUE, DARK, GREY, VERMILLION
 from converse.orbits import pictures
-from converse.orbits.pictures import LOST
 from converse.orbits.potential import ff, poly, trig
 from converse.orbits.state import vector_words
 
@@ -13,6 +13,7 @@ from .filaments import clumps, filaments
 
 SMOOTH = 0.005, 0.01, 0.0125, 0.02, 0.025, 0.03      # eps; the thesis: small to large
 PAIRS = 800
+LOST = 1e-13                            # distances below are rounding
 LINK = 0.002                            # between the points of a clump
 NOISE = 0.003                           # about (log q)/q, the error of exponents in 1989
 SMALLEST = 1e-5                         # exponents below are not told from 0
@@ -90,7 +91,7 @@ def orbits_pairs(figure, families, name):
 
 def steepest(state):
     """The largest |dp|/|dx| of the closest pairs, except pairs that doubles cannot tell apart."""
-    pairs = state.pairs(PAIRS)
+    pairs = closest(state, PAIRS)
     apart = pairs.distance > LOST
     return (pairs.momentum[apart] / pairs.distance[apart]).max()
 
@@ -141,7 +142,7 @@ def smooth(figure, families):
     lost = 0
     for letter, panel, eps in zip("abcdef", rows.flat, SMOOTH):
         state = families.at(trig, shared.SPIRAL, eps)
-        pairs = state.pairs(PAIRS)
+        pairs = closest(state, PAIRS)
         apart = pairs.distance > LOST
         distance, ratio = pairs.distance[apart], pairs.momentum[apart] / pairs.distance[apart]
         panel.plot(distance, ratio, "o", markersize=1.6, markeredgewidth=0, color=DARK)

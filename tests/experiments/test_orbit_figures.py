@@ -22,6 +22,7 @@ pytest.importorskip("matplotlib")
 import thesis as figures  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
+from pairs import pairs as closest  # noqa: E402
 from sums import fourier
 from thesis import appendix, hedlund, shared, states, twist_maps  # noqa: E402
 
@@ -262,7 +263,7 @@ def test_pairs(drawn, families, monkeypatch):
     for panel, eps in zip(figure.axes, states.SMOOTH):
         state = families.at(orbits.trig, SPIRAL, eps)
         distance, ratio = data(panel).T
-        pairs = state.pairs(60)
+        pairs = closest(state, 60)
         assert distance == pytest.approx(pairs.distance)
         assert distance * ratio == pytest.approx(pairs.momentum)
         assert panel.get_xscale() == panel.get_yscale() == "log"

@@ -65,22 +65,6 @@ def test_a_row_for_each_state(plane, line):
         assert panel.get_title(loc="left").startswith("ε = %r, 3/8: minimum" % state.eps)
 
 
-def test_points_that_doubles_cannot_tell_apart(plane):
-    state = plane[-1]
-    assert pictures.coinciding(state) == 0
-    assert pictures.coinciding(state.repeat(3)) == 3 * state.q
-    u = state.u.copy()
-    u[5] += (state.x[9] - state.x[5]) + [3e-14, -2e-14]
-    u[7] += (state.x[9] - state.x[7]) + [1e-11, 0]
-    u[2] += (1 - 1e-15, 0.3) - state.x[2]               # the torus has no edge
-    u[3] += (1e-14, 0.3) - state.x[3]
-    assert pictures.coinciding(state.moved(u)) == 4
-    figure = Figure()
-    words = pictures.rows(figure, [state, state.repeat(2), state.moved(u)])
-    assert "98 points of (b) and 4 points of (c)" in words
-    assert "not stationary" in figure.axes[4].get_title(loc="left")
-
-
 def test_files(plane, line, saddle):
     for kind, start in START.items():
         assert pictures.states_picture(line, kind).startswith(start)
