@@ -31,7 +31,7 @@ sys.path.insert(0, str(ROOT))
 from converse import check  # noqa: E402  (it needs the path)
 from converse.check import tori  # noqa: E402
 from converse.check.claim import LETTERS  # noqa: E402
-from converse.check.cover import is_whole  # noqa: E402
+from converse.check.cover import symmetries_used  # noqa: E402
 from converse.check.series import Box, Ring  # noqa: E402
 from converse.check.tree import check_mirror_images  # noqa: E402
 from converse.check.tree import leaves, trees  # noqa: E402
@@ -192,7 +192,7 @@ def statement(claim):
     """What is proved, spelled out in the words of Map.v: it is Check.statement of the claim."""
     patch = "let patch :=\n    %s in\n  " % patch_text(claim, 4)
     lines = ["forall t, in_cube t -> no_invariant_graph (waves patch t)"]
-    if not is_whole(claim):
+    if symmetries_used(claim) is None:
         lines = ["no_minimizing_orbit_into %s patch %s" % (region_text(claim), pair(claim.xstar))]
         if claim.parts:
             lines = ["forall t, in_cube t -> no_invariant_graph_into %s (waves patch t) (point %s)"
@@ -233,7 +233,7 @@ Definition the_parts : list part :=
 Lemma header : header_ok the_claim the_hints the_tree the_parts = true.
 %s""" % ("Claim %s\n  %s %s %s %s %s %s %s." % (
             patch_text(claim, 8), region_text(claim), shifts_text(claim), pair(claim.xstar),
-            "true" if is_whole(claim) else "false", alone, once,
+            "false" if symmetries_used(claim) is None else "true", alone, once,
             "None" if odd is None else "(Some %s)" % pair(odd)),
          "Hints %s %s (%s, %s)\n  [%s]." % (
              number(B), number(l), pair(place), pair(vector), ";\n   ".join(

@@ -58,8 +58,3 @@ def symmetries_used(claim):
             return None
         used = ["reversal of time", *used]
     return used
-
-
-def is_whole(claim):
-    """Does the claim's region hold enough of the torus?"""
-    return symmetries_used(claim) is not None

@@ -96,10 +96,6 @@ class Criterion:
             self.l_of[key] = l
         return self.l_of[key]
 
-    def least_in_double(self, cell):
-        """l from below as a double: the quotient is rounded to nearest, the rest lowers it."""
-        return self.least_pivot(cell) / self.fixed.one * (1 - 2.0 ** -50)
-
     def prism(self, cell):
         """The cell as a Prism that covers it.
 

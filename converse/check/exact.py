@@ -424,9 +424,8 @@ def attempt(prism, l, penalties):
         if all(lane.ended or len(lane.sites) >= MAX_SITES for lane in prism.lanes):
             break
         most *= 2
-    length = sum(map(len, sites))
     why = why or "the orbit of its centre contradicts nothing over %d points, %s" % (
-        length, "the most that are followed" if max(map(len, sites)) >= MAX_SITES else
+        sum(map(len, sites)), "the most that are followed" if max(map(len, sites)) >= MAX_SITES else
         "beyond which it is too uncertain")
     # Symbols that move the ends count a little: when they are halved, the orbit may go on.
     ends = [sum([lane.moved(i) for lane in prism.lanes]) / one for i in range(prism.symbols)]

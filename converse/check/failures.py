@@ -18,7 +18,6 @@ class Rejected(Failure):
 class NotConfirmed(Failure):
     """The checker has reached a limit: the claim of the file may be true or false."""
 
-    residual = needed = None            # of a torus, if it is not accurate enough
     status, word = NOT_CONFIRMED, "not confirmed: "
 
 

@@ -791,6 +791,11 @@ class Prisms:
         return value + (summit(form) + error), np.where(value < 0, moved + more * share, share)
 
 
+def least_in_double(criterion, cell):
+    """l from below as a double: the quotient is rounded to nearest, the rest lowers it."""
+    return criterion.least_pivot(cell) / criterion.fixed.one * (1 - 2.0 ** -50)
+
+
 class Lockstep:
     """The fast path of some claims; each prism belongs to one of them."""
 

@@ -16,7 +16,7 @@ from fractions import Fraction
 
 from .arith import fixed_of, stiffness
 from .claim import ANGLES, THESIS, Claim, Wave, check_alone, check_frame, number, present
-from .cover import is_whole
+from .cover import symmetries_used
 from .failures import NotConfirmed, Rejected, Unusable, named
 from .torus import is_at_once, torus_bound
 from .tree import check_mirror_images, leaves, tree_counts
@@ -227,7 +227,7 @@ def read_cell(proof, waves, name, sha256):
     alone = None if alone == "no" else int(alone)
     check_alone(waves, alone)
     claim = Claim(waves, centre, half, frame, alone, xstar, {}, "no", tree, sha256)
-    if not is_whole(claim):
+    if symmetries_used(claim) is None:
         raise Rejected("its region does not hold enough of the torus")
     claim.counts.update(tree_counts(claim))
     check_mirror_images(claim)

@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from .claim import ANGLES, RANGES, THESIS
-from .cover import is_whole, symmetries_used
+from .cover import symmetries_used
 from .limits import PART, VERIFIED
 from .tree import leaf_text
 from .version import __version__
@@ -70,7 +70,7 @@ def is_boxed(claim):
 
 def claimed(claim):
     """The claim of a proof file, in lines."""
-    boxed, torus = is_boxed(claim), is_whole(claim)
+    boxed, torus = is_boxed(claim), symmetries_used(claim) is not None
     potential = TRIG if boxed else "V(y) = - the sum of A sin(k.y + phase) over the waves below"
     lines = [SYSTEM, potential + ", " + GRAPH[0], *GRAPH[1:]]
     if not torus:
@@ -124,8 +124,8 @@ def report(claims, theorem, criterion, confirmed, pieces, doubles):
     proved, skipped, linked, undecided = [
         sum([claim.counts.get(kind, 0) for claim in claims])
         for kind in ("proved", "symmetric", "linked", "undecided")]
-    whole = criterion is None or is_whole(claims[0])    # else a region that is not was rejected
-    lines = ["Verified" + ", for a part of the torus only" * (not whole) + " :", *theorem, "",
+    used = symmetries_used(claims[0]) if criterion else []      # else a part was rejected
+    lines = ["Verified" + ", for a part of the torus only" * (used is None) + " :", *theorem, "",
              "Checker : converse-check " + __version__,
              "Method : Loewner criterion, multipliers, %s%sin integers%s" % (
                  "links between starting points, " * (linked > 0),
@@ -135,7 +135,7 @@ def report(claims, theorem, criterion, confirmed, pieces, doubles):
     if criterion:
         places, claim = 9, criterion.claim
         bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
-        if used := symmetries_used(claim):
+        if used:
             lines += ["Successors : y' = %s," % frame_text(claim.frame)
                       + ",".join([" " + range_text(name + " / pi", c - h, c + h) for name, c, h in
                                   zip(ANGLES, claim.centre, claim.half)])
@@ -150,4 +150,4 @@ def report(claims, theorem, criterion, confirmed, pieces, doubles):
         ", %d linked to other parts" % linked * (linked > 0),
         ", %d undecided" % undecided * (undecided > 0), skipped),
         "Proved leaves checked : %d, in %d piece%s" % (confirmed, pieces, "s" * (pieces != 1))]
-    return VERIFIED if whole else PART, lines
+    return PART if used is None else VERIFIED, lines

@@ -5,7 +5,7 @@ import contextlib
 from .claim import LETTERS
 from .criterion import Criterion
 from .failures import Unusable, named
-from .lockstep import import_numpy_if_sound
+from .lockstep import import_numpy_if_sound, least_in_double
 from .processes import ProcessDied, in_order
 from .progress import cost
 from .signals import undisturbed
@@ -29,9 +29,6 @@ class Problems:
                     self.known[n] = Criterion(claim, self.bounds and self.bounds[n])
         return self.known[n]
 
-    def least_in_double(self, leaf):
-        return self.criterion(leaf[0]).least_in_double(leaf[1])
-
     def excluded(self, leaf):
         return self.criterion(leaf[0]).excluded(leaf[1])
 
@@ -52,7 +49,7 @@ class Problems:
         fast = bool(self.fast) and import_numpy_if_sound()
         if fast:
             refused, pieces = self.fast.settle(
-                cells, [self.least_in_double(leaf) for leaf in cells],
+                cells, [least_in_double(self.criterion(n), cell) for n, cell in cells],
                 lambda n: self.excluded(cells[n]))
         else:
             for n, leaf in enumerate(cells):

@@ -257,7 +257,7 @@ def _verified(tori, jobs, tell):
         claim = check.read_torus(text.encode())
         _, facts = check.verify_torus(claim, lambda words: tell("verifying: " + words), jobs)
     except check.NotConfirmed as error:
-        if error.needed is None:
+        if not hasattr(error, "needed"):
             raise NotProved(str(error)) from None
         raise NotProved(str(error), float(error.residual), float(error.needed)) from None
     except check.Rejected as error:

@@ -2322,7 +2322,7 @@ def test_a_leaf_of_long_orbits(np, texts, generator, monkeypatch):
     claim = dataclasses.replace(claim, frame=check.DIAGONALS)
     cell = (96814, 858, 5, 0, 0), (17, 12, 10, 0, 0)
     criterion, fast = check.Criterion(claim), check.Lockstep([claim])
-    l = criterion.least_in_double(cell)
+    l = check.least_in_double(criterion, cell)
     assert criterion.attempt(criterion.least_pivot(cell), cell, check.SITE_PENALTIES[0]) is None
     with np.errstate(all="ignore"):
         prisms = check.Prisms(fast.box(*cells_of([cell]), np.array([0])), fast.shape,
@@ -2471,7 +2471,7 @@ def test_nothing_that_minimizes_is_excluded(np, texts, generator):
             if claim.parameters == 1:
                 slices[3:] = [(0, 0)] * 2
             cells.append(tuple(zip(*slices)))
-        l = np.array([criterion.least_in_double(cell) for cell in cells])
+        l = np.array([check.least_in_double(criterion, cell) for cell in cells])
         proved, _ = fast.attempt(*cells_of(cells), np.zeros(len(cells), int), l,
                                   check.SITE_PENALTIES[0])
         for cell, good in zip(cells, proved):
@@ -2595,8 +2595,8 @@ def test_long_orbits_are_followed_fewer_at_a_time(np, root, tmp_path, monkeypatc
     criterion = check.Criterion(claim)
     fast = check.Lockstep([claim])
     cells = [(0, cell) for at, cell in check.leaves(claim.tree) if claim.tree[at] == "P"]
-    refused, pieces = fast.settle(cells, [criterion.least_in_double(cell) for _, cell in cells],
-                                  lambda n: ("not by the fast path", 0))
+    least = [check.least_in_double(criterion, cell) for _, cell in cells]
+    refused, pieces = fast.settle(cells, least, lambda n: ("not by the fast path", 0))
     assert refused is None and fast.batch < check.BATCH and min(pieces) == 1
 
 

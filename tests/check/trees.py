@@ -25,7 +25,7 @@ def found_tree(claim, most):
     while todo:
         assert len(nodes) < most
         batch, todo = todo[-256:], todo[:-256]
-        l = np.array([criterion.least_in_double(cell) for cell in batch])
+        l = np.array([check.least_in_double(criterion, cell) for cell in batch])
         excluded, axis = fast.attempt(*cells_of(batch), np.zeros(len(batch), int), l,
                                       check.SITE_PENALTIES[0])
         for cell, good, at in zip(batch, excluded.tolist(), axis.tolist()):
