@@ -64,8 +64,9 @@ def parser():
                    help="save progress to the new file FILE; when the run ends, it is the proof "
                    "file")
     p.add_argument("-r", "--restore", metavar="FILE",
-                   help="continue the run whose backup is FILE, with the settings of that run, "
-                   "except that -d may be larger; FILE is kept up to date, unless -b names another")
+                   help="continue the run whose backup is FILE, with the input and the settings "
+                   "of that run, except that -d may be larger; FILE is kept up to date, unless -b "
+                   "names another")
     p.add_argument("-g", "--graphics", metavar="FILE",
                    help="draw the prisms in FILE: SVG, PNG, PDF or PostScript (.ps, .eps) by its "
                         "name; 'off': no figure (default)")
@@ -110,9 +111,6 @@ class Progress:
 
     def begin(self, proof):
         """Called by prove() before the search."""
-        if self.options.together and not proof.problem.together:
-            raise ConverseError("%s: is of another run: its parameters do not move together; leave "
-                                "out --together" % self.options.restore)
         self.begun, self.before = proof, proof.counts.proved
 
     def __call__(self, examined, counts):
@@ -153,16 +151,19 @@ def run(options):
     def on_leaf(leaf, points):
         say(_leaf_line(leaf, points) + "\n")
 
-    method = Settings(**given).method
-    problem = None if options.restore is not None and options.input is None else \
-        read_problem(options.input, together=options.together)      # None: that of the proof
+    problem = None
+    if options.restore is None:
+        given["method"] = Settings(**given).method
+        problem = read_problem(options.input, together=options.together)
+    elif options.input or options.together:
+        raise ConverseError("-r continues a run as it was asked for; leave out the input and "
+                            "--together")
     with ProgressLine(not options.verbose) as line, executor_of(options) as executor:
         progress = Progress(options, line)
         proof = prove(problem, xstar=options.xstar, jobs=options.jobs, executor=executor,
                       backup=options.backup, resume=options.restore,
                       time_limit=options.time_limit, on_begin=progress.begin,
-                      progress=progress, on_leaf=on_leaf if options.verbose else None,
-                      **(given if options.restore is not None else {**given, "method": method}))
+                      progress=progress, on_leaf=on_leaf if options.verbose else None, **given)
         if not options.begun:           # the time limit came before the search
             progress(0.0, proof.counts)
     say(verdict(proof, options.backup or options.restore))

@@ -321,8 +321,8 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
     Parameters
     ----------
     source
-        The map, or a Problem of it.  It may have a range of parameters: what is proved holds for
-        all of them.
+        The map, or a Problem of it; None with resume.  It may have a range of parameters: what is
+        proved holds for all of them.
     path
         The file that keeps the columns: a new one or, with resume, the file of the portrait to
         continue.  None: there is none.
@@ -351,8 +351,8 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
     check_options(jobs, executor, time_limit)
     asked = None if source is None else Portrait.new(Problem.of(source), columns, depth, strips)
     with interruptible(), Backup(path, resumed=path if resume else None) as backup:
-        if path is not None and resume:
-            portrait = _continued(path, asked)
+        if path is not None and resume and asked is None:
+            portrait = Portrait.load(path)
         elif asked is not None and not resume:
             portrait = asked
         else:
@@ -371,16 +371,6 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
         with Filling(portrait, backup, WorkerPool(executor, jobs, native.Stop()), time_limit,
                      look) as filling:
             filling.work(lambda: next(tasks, None), take)
-    return portrait
-
-
-def _continued(path: Path, asked: Optional[Portrait]) -> Portrait:
-    """The portrait in a file, if it is the one that is asked for."""
-    portrait = Portrait.load(path)
-    for name in ("problem", "strip", "depth", "columns") if asked is not None else ():
-        if getattr(asked, name) != getattr(portrait, name):
-            raise ConverseError("%s: is a portrait with another %s; name another file, or continue "
-                                "it as it is" % (path, name))
     return portrait
 
 

@@ -44,8 +44,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
     Parameters
     ----------
     source : SymplecticMap or Problem, optional
-        The maps; or a Problem, which also says where x_1 is looked for.  With `resume` it may be
-        left out, and must agree if it is given.
+        The maps; or a Problem, which also says where x_1 is looked for.
     method, depth, digits, stubborn, as_printed : optional
         See Settings.  The default method is the sharper one, "loewner", unless `digits` or
         `as_printed`, which only the thesis's method has, are given.
@@ -60,8 +59,9 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
     backup : path, optional
         A new file that is kept up to date, and is the proof file in the end.
     resume : Proof or path, optional
-        An unfinished proof, or its file, to continue with its settings; only `depth` may be
-        greater. A file is also kept up to date, unless `backup` names another.
+        An unfinished proof, or its file, to continue with its map and its settings; `depth` may
+        be greater, and `stubborn` differ.  A file is also kept up to date, unless `backup` names
+        another.
     time_limit : float
         Seconds of this run after which, about, the search is left as it is.
     on_begin : callable, optional
@@ -95,21 +95,24 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
     given: Dict[str, Any] = {name: value for name, value in (
         ("method", method), ("depth", depth), ("digits", digits), ("stubborn", stubborn),
         ("as_printed", as_printed)) if value is not None}
-    if source is None and resume is None:
-        raise TypeError("there must be a map or a problem, or a proof to resume")
-    problem = None if source is None else Problem.of(source)
     check_options(jobs, executor, time_limit)
-    star = None if xstar is None else _point(xstar)
     file = None if resume is None or isinstance(resume, Proof) else resume
     name = "the proof to resume" if file is None else os.fspath(file)
-    if problem is not None and resume is None:
+    if resume is not None:
+        if source is not None or xstar is not None or not set(given) <= {"depth", "stubborn"}:
+            raise ValueError("a proof is continued as it was asked for, only deeper or more "
+                             "stubbornly; leave out the map, x* and the method")
+    elif source is None:
+        raise TypeError("there must be a map or a problem, or a proof to resume")
+    else:
         if method is None and digits is None and not as_printed:
             given["method"] = "loewner"
-        before = Proof((Tree(problem, star),), Settings(**given))
+        before = Proof((Tree(Problem.of(source), None if xstar is None else _point(xstar)),),
+                       Settings(**given))
     with interruptible(), Backup(file if backup is None else backup, resumed=file) as backup_file:
         if resume is not None:
             proof = resume if isinstance(resume, Proof) else Proof.load(resume)
-            before = continued(proof, name, problem, given, star)
+            before = continued(proof, name, depth, stubborn)
         before = ready(before)
         if on_begin is not None:
             on_begin(before)

@@ -268,7 +268,7 @@ try:
         hold.append(bytearray(16384))
 except MemoryError:
     del hold[-20:]
-sys.exit(main(["--jobs", "1", "-r", backup, path]))
+sys.exit(main(["--jobs", "1", "-r", backup]))
 """
 
 

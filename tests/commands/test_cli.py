@@ -121,7 +121,7 @@ def test_backup_and_restore(command, sample, output, tmp_path):
     sha256 = hashlib.sha256(backup.read_bytes()).hexdigest()
     assert (status, timeless(out), err) == (0, output + "Proof file : SHA-256 %s\n" % sha256, "")
     assert Proof.load(backup).no_tori
-    for arguments in (["-r", backup], ["-r", backup, sample], ["-r%s" % backup, "-b%s" % backup],
+    for arguments in (["-r", backup], ["-r%s" % backup, "-b%s" % backup],
                       ["--restore", backup, "--backup", tmp_path / "other.gz"]):
         status, out, err = command(*arguments)
         assert (status, timeless(out).split("Restored")[0], err) == (0, output, "")
@@ -141,13 +141,13 @@ def test_restore_alone(command, sample, root, tmp_path):
     whole = Proof.load(backup)
     assert whole.no_tori and whole.problem == half.problem and whole.depth == 120
     assert check.verify(backup)
-    for arguments in (["-d", "9"], ["--method", "thesis"], ["-p", "36"], ["--as-printed"],
-                      ["--together", sample], [sample], [root / "inputs" / "standard.json"]):
+    for words, arguments in (
+            ("of another run", ["-d", "9"]), ("the method", ["--method", "thesis"]),
+            ("the method", ["-p", "36"]), ("the method", ["--as-printed"]),
+            ("x* and", ["--xstar", "0.8", "0.95"]), ("--together", ["--together"]),
+            ("leave out the input", [sample])):
         status, out, err = command("-r", backup, *arguments)
-        assert (status, out) == (2, "") and one_line(err)
-        assert "of another run" in err and "--together" not in err
-    assert "(potential: there " in err           # not its together, which the input cannot name
-    assert command("-r", backup, root / "inputs" / "trig180.in", "--together")[0] == 0
+        assert (status, out) == (2, "") and one_line(err) and words in err
     assert Proof.load(backup) == whole
 
 
@@ -179,9 +179,8 @@ def test_marked_backup_is_no_proof(command, sample, tmp_path):
     backup = tmp_path / "backup"
     assert command("--as-printed", "-b", backup, sample)[0] == 4
     assert "kind: as printed, not a proof\n" in backup.read_text()
-    for arguments in [], ["--as-printed"]:
-        status, out, err = command("-r", backup, *arguments, sample)
-        assert status == 4 and one_line(err) and "not a proof" in err
+    status, out, err = command("-r", backup)
+    assert status == 4 and one_line(err) and "not a proof" in err
 
 
 def test_the_sharper_method(command, root, tmp_path):
@@ -192,7 +191,7 @@ def test_the_sharper_method(command, root, tmp_path):
     assert out.startswith("THEOREM\n") and "\n  and for every multiple s >= 1 of the upper" in out
     assert "\nVerify     converse-check %s\n" % path in out or len(str(path)) > 60
     assert "SHA-256    " + hashlib.sha256(path.read_bytes()).hexdigest() in out
-    again = command("--method", "loewner", "--together", "-r", path, sample)
+    again = command("-r", path)
     assert again[0] == 0 and hashlib.sha256(path.read_bytes()).hexdigest() in again[1]
     picture = tmp_path / "a.svg"
     assert command("--method=loewner", "--together", "-g", picture, sample)[0] == 0
@@ -310,12 +309,9 @@ def test_bad_backups(command, sample, root, tmp_path):
     for path, word in ((truncated, "truncated"), (edited, "damaged"), (sample, "not a proof file"),
                        (longer, "something follows the end"), (tmp_path, "is a directory"),
                        (tmp_path / "missing", "cannot be read")):
-        status, out, err = command("-r", path, sample)
+        status, out, err = command("-r", path)
         assert status == 2 and out == "" and one_line(err)
         assert str(path) in err and word in err
-    status, out, err = command("-r", good, root / "inputs" / "trig276.in")
-    assert status == 2 and one_line(err) and "(a: there 0.30725 .. 0.30975" in err
-    assert command("-r", good, "-p40", sample)[0] == 2
 
 
 def test_main_returns_the_status(sample, capsys):
@@ -380,13 +376,6 @@ def test_nothing_that_a_terminal_obeys(command, sample, tmp_path):
         assert status == 2 and one_line(err) and "\x1b" not in err + out
 
 
-def test_options_that_do_not_fit_a_backup(command, sample, tmp_path):
-    backup = tmp_path / "b"
-    assert command("-b", backup, sample)[0] == 0
-    status, out, err = command("-r", backup, "--together")
-    assert (status, out) == (2, "") and one_line(err) and "do not move together" in err
-
-
 @pytest.mark.parametrize("arguments, advice", [
     (["-d", "0"], "or deeper cuts (-d 10)"), (["-d", "3"], "or deeper cuts (-d 10)"),
     (["-d", "60"], "or deeper cuts (-d 120)"),
@@ -407,12 +396,10 @@ def test_a_potential_of_ones_own(command, root, tmp_path):
     status, out, err = command("--method", "loewner", "-d9", "-s", "-b", path,
                                stdin=sample.read_bytes())
     assert (status, err) == (1, "") and out.startswith("UNDECIDED: ")
-    status, out, err = command("-r", path, "-d", "120", sample)
+    status, out, err = command("-r", path, "-d", "120")
     assert (status, err) == (0, "")
     assert "  with  V(y) = K cos y,\n  has no rotational invariant circle\n" \
         "  for every K in [0.976, 1.34]\n  and for every K > 1.34.\n" in out
-    status, out, err = command("-r", path, root / "inputs" / "two-harmonics.json")
-    assert (status, out) == (2, "") and one_line(err) and "(potential: there " in err
 
 
 @pytest.mark.parametrize("arguments, words", [
@@ -444,8 +431,6 @@ def test_json_mistakes_are_one_line(command, tmp_path):
 def test_a_point_is_chosen(command, sample, tmp_path):
     status, out, err = command("-d5", "--xstar", "0.8", "-0.95", "-b", tmp_path / "a", sample)
     assert (status, err) == (1, "") and "\nx* : 0.8 -0.95\n" in out
-    status, out, err = command("-r", tmp_path / "a", "--xstar", "0.8", "0.95")
-    assert (status, out) == (2, "") and one_line(err) and "(x*: there 0.8 -0.95" in err
     for words in ("0.8", "x"), ("1/3", "0"), ("1e999", "0"):
         status, out, err = command("--xstar", *words, sample)
         assert (status, out) == (2, "") and one_line(err) and "--xstar" in err

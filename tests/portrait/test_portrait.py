@@ -13,7 +13,6 @@ from converse.model.problem import Problem
 from converse.prover import tree
 from converse.prover.portrait import Portrait, portray, pruned
 from converse.storage import files
-from converse.storage.files import ConverseError
 
 from truth import TORTURE
 
@@ -228,7 +227,7 @@ def test_portrait_is_continued(strips, tmp_path):
     assert check.verify(tmp_path / "part").verdict == "verified"
     more = portray(path=tmp_path / "part", resume=True)
     assert more.found == portrait.found and more.complete
-    with pytest.raises(ConverseError, match="another depth"):
+    with pytest.raises(TypeError, match="or the file of a portrait"):
         portray(standard("0.9"), path=path, columns=60, depth=9, resume=True)
 
 

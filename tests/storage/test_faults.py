@@ -109,7 +109,7 @@ def test_kill_at_random_moments(held, command, sample, output, tmp_path, seed):
         half = Proof.load(backup)       # whole, whenever the run was killed
         assert half.tree.startswith(trees[-1]) and not half.no_tori
         trees.append(half.tree)
-        arguments = ["-r", backup, sample]
+        arguments = ["-r", backup]
     status, out, err = command(*arguments)
     assert (status, timeless(out).split("Restored")[0], err) == (0, output, "")
     whole = Proof.load(backup)
