@@ -1,12 +1,12 @@
 """Minimax orbits, the flux through gaps, and gaps, against mpmath and what is known of them."""
 
+import contextlib
 import math
 from dataclasses import replace
 
 import mpmath
 import numpy as np
 import pytest
-from less_action import search
 from sums import fourier
 
 from converse import ConverseError, orbits
@@ -22,6 +22,15 @@ while len(FIBONACCI) < 25:
 
 def least(potential, p, q, eps):
     return orbits.follow(potential, p, q, [eps])[0]
+
+
+def best(potential, p, q, eps):
+    """The state of least action of several that begin elsewhere."""
+    states = []
+    for k in range(16):
+        with contextlib.suppress(ConverseError):
+            states.append(orbits.straight(potential, p, q, (k / 16,)).relax(eps))
+    return min(states, key=lambda state: state.action)
 
 
 def golden(k, eps):
@@ -181,8 +190,8 @@ def test_potentials_without_symmetry():
     for k in range(8):
         potential = fourier({(i,): tuple(rng.normal(size=2) / 40 / i ** 2.5)
                                     for i in range(1, 5)}, "own %d" % k)
-        state = search(potential, ((2,), (5,))[k % 2], (5, 8)[k % 2],
-                       float(rng.choice([0.8, 2, 6])), 60)
+        state = best(potential, ((2,), (5,))[k % 2], (5, 8)[k % 2],
+                     float(rng.choice([0.8, 2, 6])))
         pair, r = state.minimax(), pow(state.p[0], -1, state.q)
         gap = np.roll(state.u, -r, 0) - state.u + 1 / state.q
         held, heights = int(np.argmax(gap)), []
@@ -277,7 +286,7 @@ def test_gaps():
 def test_no_pass_where_a_higher_one_may_have_been_missed(monkeypatch):
     """Two hills on the way: the lower one is not the pass when the other is not found."""
     potential = fourier({(1,): (1, 0), (2,): (0.4, 0.05)}, "two hills")
-    state = search(potential, (0,), 1, 0.02, 10, seed=1)
+    state = best(potential, (0,), 1, 0.02)
     between, found = minimax._Way.between, []
 
     def counted(way, low, high):
