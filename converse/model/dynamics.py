@@ -1,7 +1,7 @@
 """Images of points under a map, orbits, Jacobians and phase portraits, in doubles."""
 
 from numbers import Integral
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Optional, Tuple
 
 if TYPE_CHECKING:
     import numpy as np
@@ -112,9 +112,7 @@ class Dynamics:
         return ys, Js
 
     def portrait(self, y: Any = None, J: Any = None, steps: int = 500, *, eps: float = 1.0,
-                 plane: Optional[Tuple[str, str]] = None,
-                 within: Optional[Mapping[str, Tuple[float, float]]] = None,
-                 ax: Any = None, **style: Any) -> Any:
+                 plane: Optional[Tuple[str, str]] = None, ax: Any = None, **style: Any) -> Any:
         """A phase portrait: the orbits of initial points, modulo the period.
 
         Parameters
@@ -129,9 +127,6 @@ class Dynamics:
             The coordinates to the right and upwards.  With one angle "y" and "J" (with a potential
             of converse.orbits "x" and "p").  With two angles two of "y0", "y1", "J0", "J1", by
             default "y0" and "J0": the portrait is a projection.
-        within
-            {name: (middle, half width)} of other coordinates.  Only the points there are drawn,
-            which is a slice.
         ax
             Axes of matplotlib, which are drawn into and returned; with None a Figure is returned.
         style
@@ -145,7 +140,7 @@ class Dynamics:
             matplotlib is missing.
         """
         from ..orbits.portrait import portrait
-        return portrait(self, eps, y, J, _steps(steps), plane, within, ax, style)
+        return portrait(self, eps, y, J, _steps(steps), plane, ax, style)
 
     def _at(self, y, J, eps):
         """y and J of one shape, there eps times the gradient, and eps V'' as an array (m, n, n)."""

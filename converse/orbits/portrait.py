@@ -53,60 +53,31 @@ def coordinates(system, eps, x, p, steps):
     return {name: both[:, :, k] for k, name in enumerate(names(system))}
 
 
-def chosen(system, plane, within):
-    """The plane and the conditions of a slice, if they are valid: a pair of names, and
-    {name: (middle, half width)}."""
+def chosen(system, plane):
+    """The plane, if it is valid: a pair of names."""
     known = names(system)
     plane = (known[0], known[system.dimension]) if plane is None else tuple(plane)
     if len(plane) != 2 or plane[0] == plane[1] or not set(plane) <= set(known):
         raise ValueError("the plane is two of %s, not %r" % (", ".join(known), plane))
-    conditions = {}
-    for name, pair in dict(within or {}).items():
-        try:
-            middle, half = map(float, pair)
-            valid = name in known and name not in plane and math.isfinite(middle) and 0 < half
-        except (TypeError, ValueError):
-            valid = False
-        if not valid:
-            raise ValueError("within says {name: (middle, half width)} of coordinates that are not "
-                             "in the plane, %s here; not %r: %r"
-                             % (", ".join(set(known) - set(plane)) or "none", name, pair))
-        conditions[name] = middle, half
-    return plane, conditions
+    return plane
 
 
-def title(system, plane, conditions):
-    """The title of a portrait of orbits with more than two coordinates; "" if it shows all."""
-    if system.dimension == 1:
-        return ""
-    words = [_math(name) for name in plane]
-    if not conditions:
-        return "all points, projected to (%s, %s)" % tuple(words)
-    return r"slice: points with %s modulo $%s$" % (", ".join(
-        r"$|%s - %g| \leq %g$" % (_symbol(name), *pair) for name, pair in conditions.items()),
-        PERIODS[system.period])
-
-
-def portrait(system, eps, x, p, steps, plane, within, ax, style):
+def portrait(system, eps, x, p, steps, plane, ax, style):
     """See Dynamics.portrait."""
-    plane, conditions = chosen(system, plane, within)
+    plane = chosen(system, plane)
     plot.check()
     found = coordinates(system, eps, x, p, steps)
-    seen = np.ones(found[plane[0]].shape, bool)
-    for name, (middle, half) in conditions.items():
-        off = found[name] - middle
-        seen &= abs(off - system.period * np.rint(off / system.period)) <= half
-    columns = [np.where(seen, found[name], np.nan) for name in plane]
+    columns = [found[name] for name in plane]
     if ax is not None:
-        return _draw(ax, system, plane, conditions, columns, style)
+        return _draw(ax, system, plane, columns, style)
 
     def fill(figure):
-        _draw(figure.subplots(), system, plane, conditions, columns, style)
+        _draw(figure.subplots(), system, plane, columns, style)
 
     return plot.new(4.4, 4.4, fill)
 
 
-def _draw(ax, system, plane, conditions, columns, style):
+def _draw(ax, system, plane, columns, style):
     ax.plot(*columns, **{**POINTS, **style})
     period, words = system.period, PERIODS[system.period]
     ax.set(xlim=(0, period), ylim=(0, period), aspect="equal",
@@ -117,15 +88,10 @@ def _draw(ax, system, plane, conditions, columns, style):
             axis.set_ticks([0, 0.5, 1])
         else:
             axis.set_ticks([0, math.pi, 2 * math.pi], ["$0$", r"$\pi$", r"$2\pi$"])
-    words = title(system, plane, conditions)
-    if words:
-        ax.set_title(words)
+    if system.dimension > 1:
+        ax.set_title("all points, projected to ($%s$, $%s$)" % tuple(map(_symbol, plane)))
     return ax
 
 
 def _symbol(name):
     return name[0] + ("_" + name[1] if name[1:] else "")
-
-
-def _math(name):
-    return "$%s$" % _symbol(name)

@@ -46,7 +46,9 @@ def _theorem(proof):
     problem, part = proof.problem, proof.conclusion == REGION
     torus = TORUS[problem.map.dimension]
     lines = ["THEOREM" + ", for a part of the torus only" * part,
-             *map_lines(problem), "  has no " + torus + _graph(problem)]
+             *map_lines(problem), "  has no " + torus
+             + " J = P + S'(y) over both angles, P constant, S periodic and C1"
+             * (problem.map.dimension == 2)]
     if part:
         lines += indented(["whose orbit goes from x* = %s to y' = %s, where" % (
                                 _star(problem, proof.xstar), frame_text(problem.frame, "v%d")),
@@ -56,13 +58,6 @@ def _theorem(proof):
         lines += ["  So the map of y%d alone has no rotational invariant circle."
                   % one_angle(problem)]
     return [*lines, ""]
-
-
-def _graph(problem):
-    """The definition of a torus, as the theorem needs it."""
-    if problem.map.dimension == 1:
-        return ""
-    return " J = P + S'(y) over both angles, P constant, S periodic and C1"
 
 
 # ---- without a theorem

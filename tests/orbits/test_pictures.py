@@ -192,32 +192,25 @@ def test_a_portrait_in_one_line():
     assert len(colours) == 3
 
 
-def test_a_projection_and_a_slice():
+def test_projections():
     x, p = np.random.default_rng(3).random((2, 30, 2))
     xs, ps = (each % 1 for each in orbits.trig.orbit(x, p, 40, 0.01))
     panel, = orbits.trig.portrait(x, p, 40, eps=0.01).axes
     assert "projected" in panel.get_title() and panel.get_xlabel() == "$x_0$  mod $1$"
     for k in range(30):
         assert data(panel, k) == pytest.approx(np.stack([xs[:, k, 0], ps[:, k, 0]], 1))
-    panel, = orbits.trig.portrait(x, p, 40, eps=0.01, plane=("p1", "x1"),
-                                  within={"x0": (0.0, 0.1), "p0": (0.5, 0.3)}).axes
-    assert panel.get_title().startswith("slice") and "x_0 - 0" in panel.get_title()
+    panel, = orbits.trig.portrait(x, p, 40, eps=0.01, plane=("p1", "x1")).axes
+    assert panel.get_title() == "all points, projected to ($p_1$, $x_1$)"
     assert panel.get_xlabel() == "$p_1$  mod $1$" and panel.get_ylabel() == "$x_1$  mod $1$"
-    inside = (np.minimum(xs[..., 0], 1 - xs[..., 0]) <= 0.1) & (abs(ps[..., 0] - 0.5) <= 0.3)
-    assert 20 < inside.sum() < inside.size / 2
-    drawn = np.concatenate([data(panel, k) for k in range(30)])
-    drawn = drawn[np.isfinite(drawn[:, 0])]
-    expected = np.stack([ps[..., 1][inside], xs[..., 1][inside]], 1)
-    assert drawn[np.lexsort(drawn.T)] == pytest.approx(expected[np.lexsort(expected.T)])
+    for k in range(30):
+        assert data(panel, k) == pytest.approx(np.stack([ps[:, k, 1], xs[:, k, 1]], 1))
 
 
 @pytest.mark.parametrize("potential, wrong, words", [
     (orbits.standard, {"y": 0.1}, "both angles and momenta"),
     (orbits.standard, {"plane": ("x0", "p0")}, "two of x, p"),
     (orbits.trig, {"plane": ("x0", "x0")}, "two of x0, x1, p0, p1"),
-    (orbits.trig, {"plane": "x0"}, "two of"), (orbits.trig, {"within": {"x0": (0, 1)}}, "not in"),
-    (orbits.trig, {"within": {"x1": 0.1}}, "half width"), (orbits.trig, {"steps": 1.5}, "steps"),
-    (orbits.trig, {"within": {"x1": (0.1, 0.0)}}, "half width"),
+    (orbits.trig, {"plane": "x0"}, "two of"), (orbits.trig, {"steps": 1.5}, "steps"),
     (orbits.trig, {"y": [0.1], "J": [0.2]}, "shape"), (orbits.trig, {"steps": 10 ** 8}, "10000000"),
     (orbits.standard, {"y": [], "J": []}, "0 orbits"), (orbits.trig, {"eps": math.nan}, "eps")])
 def test_bad_portraits(potential, wrong, words):
