@@ -184,12 +184,6 @@ static const engine *fastest_engine(void)
     return &engine_2;
 }
 
-/* A double that is not less than x >= 0. */
-static double above(const apm_t x)
-{
-    return apm_sgn(x) == 0 ? 0.0 : apm_nearest_d(x) * (1.0 + 0x1p-50) + 0x1p-1070;
-}
-
 /* ---- numbers in turns */
 
 /* How many units of 2^-64 turns a radian has, 2^63/pi < 10^19, to SCALE_DIGITS places.
@@ -240,8 +234,10 @@ static int128 whole(loewner *w, const apm_t x, const apm_t scale, int coarse)
 /* An integer as a factor of turns. */
 static uint64_t factor_of(double k) { return (uint64_t)(int64_t)k; }
 
-/* The angles, and x*.  err_v: the 9 units of set_region, and what the radians are off, for other
-   points' links end at a prism's sides. */
+/* The angles, and x*.  err_v is the 9 units of set_region, and the errors of the radians, since
+   links of other points end at a prism's sides.  Pi has 30 places at least (least_digits), and
+   numbers of 10^ORDER units are below 2^17 pi.  So the errors of an axis's five numbers, and the
+   sum of them in half (region_to_radians), are below 10^-23 radians, 10^-4 of a unit. */
 static void set_angles(loewner *w, const patch *problem, const apm_t scale)
 {
     w->n_parameters = problem->n_parameters;
@@ -254,7 +250,7 @@ static void set_angles(loewner *w, const patch *problem, const apm_t scale)
             w->turns.shift[i][m] = whole(w, problem->shift[i][m], scale, 0);
             w->shift[i][m] = near(problem->shift[i][m]);
         }
-        w->err_v[i] = 16.0 * TURN_UNIT + above(problem->off[i]);
+        w->err_v[i] = 16.0 * TURN_UNIT;
         w->turns.xstar[i] = (uint64_t)whole(w, problem->xstar[i], scale, 0);
         w->xstar_err[i] = 2.0 * TURN_UNIT;
         for (int k = 0; k < 2; k++) {

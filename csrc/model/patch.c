@@ -21,7 +21,6 @@ static void for_each(patch *p, void (*what)(apm_t))
         what(p->half[j]);
         for (int m = 0; m < PARAMETERS; m++)
             what(p->shift[j][m]);
-        what(p->off[j]);
         what(p->xstar[j]);
     }
 }

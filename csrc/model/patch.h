@@ -13,7 +13,6 @@ typedef struct {
     int n_waves, n_parameters, k[MOST_WAVES][2], frame[4], odd;
     apm_t phase[MOST_WAVES], amplitude[MOST_WAVES], part[MOST_WAVES][PARAMETERS];
     apm_t angle[2], half[2], shift[2][PARAMETERS], xstar[2];
-    apm_t off[2];                       /* see region_to_radians */
 } patch;
 
 void patch_init(patch *p);
@@ -46,8 +45,9 @@ void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp);
    which is in radians already. */
 void shift_to_radians(apm_t shift, apm_t half, const apm_t pi, long dp);
 
-/* Converts the region and its shifts.  The result encloses the region; and each prism of it,
-   computed in radians and widened by off[j] on both sides of axis j, contains the exact prism. */
+/* Converts the region and its shifts.  The result encloses the region.  A centre or shift of x pi
+   is off by at most (|x| + 1) 10^-dp.  half is larger than the exact half by at most the sum of
+   (|x| + 1) 10^-dp over all numbers of its axis, itself among them. */
 void region_to_radians(patch *p, const apm_t pi, long dp);
 
 #endif

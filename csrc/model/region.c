@@ -39,22 +39,13 @@ void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp)
     apm_clear(above);
 }
 
-/* Let c, s and h be centre, shifts and half-width.  A side c + sum of s t + h u, |t| <= 1, |u| <=
-   1, has the errors of c, s and h.  Let err = h - (exact half) (truncated pi).  The errors of c
-   and s together are at most err, as they are part of h, and the error of h is at most err.  So
-   off = 2 err is enough. */
+/* The truncated pi and the truncated product make a number x off by |x| ulp and by one ulp, and
+   half contains the errors of the others. */
 void region_to_radians(patch *p, const apm_t pi, long dp)
 {
-    apm_t least;
-
-    apm_init(least);
     for (int j = 0; j < 2; j++) {
-        apm_mul(least, p->half[j], pi);
         to_radians(p->angle[j], p->half[j], pi, dp);
         for (int m = 0; m < PARAMETERS; m++)
             shift_to_radians(p->shift[j][m], p->half[j], pi, dp);
-        apm_sub(p->off[j], p->half[j], least);
-        apm_mul_si(p->off[j], p->off[j], 2);
     }
-    apm_clear(least);
 }

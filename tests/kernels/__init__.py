@@ -35,6 +35,7 @@ _PRISM = "a prism whose parameters depend on nothing else and have no negative w
 TAKES = {
     "bound_sincos": "lo <= hi", "product": "lo <= hi", "square": "lo <= hi",
     "torus": "lo <= hi of each parameter", "image": _PRISM, "btrace": _PRISM, "Blams": _PRISM,
+    "row_sums": _PRISM,
     "image_ns": _PRISM + ", and at most 1e9 repetitions",
     "least_lambda": _PRISM + ", and positive bounds of a positive definite block",
     "cone": "k = 4 or k = 16", "scale": "at most 100000 places",

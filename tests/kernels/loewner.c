@@ -306,7 +306,6 @@ static void set_patch(patch *b, apm_t in[], int together, const apm_t zero)
         for (int m = 0; m < b->n_parameters; m++)
             *b->shift[i][m] = *zero;
         *b->xstar[i] = *in[10 + i];
-        *b->off[i] = *zero;
     }
 }
 
@@ -318,7 +317,7 @@ static int set_any(patch *b, const question *q, int more)
     const int parameters = q->nin < 2 ? 0 : (int)apm_get_d(in[1]);
 
     if (waves < 1 || waves > MOST_SHOWN || parameters < 0 || parameters > PARAMETERS ||
-        q->nin != rest + 18 + more)
+        q->nin != rest + 16 + more)
         return 0;
     memset(b, 0, sizeof *b);
     b->n_waves = waves;
@@ -336,7 +335,6 @@ static int set_any(patch *b, const question *q, int more)
         *b->angle[j] = *in[rest + 2 * j];
         *b->half[j] = *in[rest + 2 * j + 1];
         *b->xstar[j] = *in[rest + 8 + j];
-        *b->off[j] = *in[rest + 16 + j];
         for (int m = 0; m < PARAMETERS; m++)
             *b->shift[j][m] = *in[rest + 10 + PARAMETERS * j + m];
     }

@@ -123,7 +123,7 @@ static int region(long dp, apm_t in[], apm_t out[])
 }
 
 /* Centre, half-width and a shift by each of three parameters, of v0 in units of pi -> the same in
-   radians, and what they are off. */
+   radians. */
 static int region_that_moves(long dp, apm_t in[], apm_t out[])
 {
     patch p;
@@ -143,7 +143,6 @@ static int region_that_moves(long dp, apm_t in[], apm_t out[])
     apm_set(out[1], p.half[0]);
     for (int m = 0; m < PARAMETERS; m++)
         apm_set(out[2 + m], p.shift[0][m]);
-    apm_set(out[5], p.off[0]);
     patch_clear(&p);
     apm_clear(pi);
     return CV_OK;
@@ -247,7 +246,7 @@ static const struct {
     { { "order", 1, 1 }, order },
     { { "double", 1, 1 }, as_double },
     { { "region", 2, 2 }, region },
-    { { "region_that_moves", 5, 6 }, region_that_moves },
+    { { "region_that_moves", 5, 5 }, region_that_moves },
     { { "double_sincos", 1, 2 }, sine_and_cosine },
     { { "double_sincos_ns", 2, 1 }, sines_ns },
     { { "torus", 6, 2 }, torus },

@@ -117,6 +117,23 @@ static int k_image(state *s, apm_t in[], apm_t out[])           /* prism -> pris
     return CV_OK;
 }
 
+/* Prism -> bounds of the sums of |beta|, |(gamma - gamma_c) P_pp| and |beta - beta_c|. */
+static int k_row_sums(state *s, apm_t in[], apm_t out[])
+{
+    numbers *const n = &s->n;
+    prism *const pz = &n->work[0];
+
+    (void)in;
+    set_sines(s, pz->centre.v);
+    find_jacobian(s, &n->deriv, &pz->centre);
+    bound_beta(s, &n->deriv);
+    bound_gamma(s, &n->deriv, pz);
+    put(s, out[0], n->beta_star);
+    put(s, out[1], n->gamma_dif);
+    put(s, out[2], n->beta_dif);
+    return CV_OK;
+}
+
 static int k_image_ns(state *s, apm_t in[], apm_t out[])    /* prism, n -> ns per image, of n */
 {
     const double repeat = apm_get_d(in[PRISM_SIZE]);
@@ -241,6 +258,7 @@ static const struct {
     { { "inverse", 16, 17 }, 0, 0, k_inverse },
     { { "gauss_jordan", 16, 17 }, 0, 0, k_gauss_jordan },
     { { "image", PRISM_SIZE, PRISM_SIZE }, 0, 1, k_image },
+    { { "row_sums", PRISM_SIZE, 3 }, 0, 1, k_row_sums },
     { { "image_ns", PRISM_SIZE + 1, 1 }, 0, 1, k_image_ns },
     { { "btrace", PRISM_SIZE, 2 }, 0, 1, k_btrace },
     { { "Blams", PRISM_SIZE, 4 }, 0, 1, k_Blams },

@@ -366,6 +366,32 @@ def test_the_band_against_a_dense_matrix(potential, p, q, eps):
         assert state.least == pytest.approx(eigenvalues[0], rel=1e-4)
 
 
+@pytest.mark.parametrize("n", [1, 2])
+def test_the_round_of_the_first_pivot_that_is_not_positive(n):
+    """Against the open chain of blocks, run round the orbit: it is definite up to there."""
+    rng, found, indefinite = np.random.default_rng(n), [], 0
+    for _ in range(400):
+        q, rounds = int(rng.integers(1, 5)), 4
+        blocks, pivots = np.tile([2.0, 0.0, 2.0], (q, 1)), np.zeros((q, 3))
+        blocks[:, :2 * n - 1] += rng.normal(size=(q, 2 * n - 1)) * rng.choice([0.1, 0.5, 2])
+        chain = np.zeros((n * q * rounds, n * q * rounds))
+        first = 0
+        for j in range(q * rounds):
+            a, b, c = blocks[j % q]
+            chain[n * j:n * j + n, n * j:n * j + n] = np.array([[a, b], [b, c]])[:n, :n]
+            for i in range(n * j, n * j + n if j else 0):
+                chain[i, i - n] = chain[i - n, i] = -1
+            values = np.linalg.eigvalsh(chain[:n * j + n, :n * j + n])
+            if values[0] <= 0:
+                first, indefinite = j // q + 1, indefinite + (values[-1] > 0)
+                break
+        result = lib.cv_pivots(n, q, address(blocks, "double(*)[3]"), rounds,
+                               address(pivots, "double(*)[3]"))
+        assert result == -first if first else result >= 0
+        found.append(result)
+    assert {-4, -3, -2, -1, 0} <= {*found} and indefinite > 100
+
+
 def test_action_gradient_and_blocks_belong_together():
     """Each is the derivative of the one before, by differences; type and action are those of H."""
     rng = np.random.default_rng(4)

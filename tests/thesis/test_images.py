@@ -7,8 +7,8 @@ import mpmath
 import pytest
 
 import kernels
-from truth import (CLOSE, DIGITS, TORTURE, cube_of, cube_point, decimal, list_prism, mp, point_of,
-                   rng_for, step, uniform)
+from truth import (CLOSE, DIGITS, TORTURE, beta, cube_of, cube_point, decimal, exact, list_prism,
+                   mp, point_of, rng_for, step, uniform)
 
 DP = 35
 
@@ -304,6 +304,48 @@ def test_the_error_of_the_centre_grows_with_the_parameters_of_any_prism():
             x = step(point_of((centre, matrix), cube_point(rng)))
             assert outside(inside, x) <= CLOSE * 10**20
     assert tested > 100
+
+
+def sums_at(prism, x):
+    """At a point: the sums of |beta|, of |(gamma - gamma_c) P_pp| and of |beta - beta_c|, each over
+    all entries of both rows."""
+    centre, matrix = prism
+
+    def entries(p):
+        first, mixed, second = beta(*map(mp, p[:3] + p[5:]))
+        return [first, mixed, mixed, second]
+
+    def waves(p):
+        return [mpmath.cos(mp(y)) for y in (p[5], p[6], p[5] + p[6])]
+
+    with mpmath.workdps(DIGITS):
+        here, there = entries(x), entries(centre)
+        moved = [abs(y - z) * mp(matrix[j][j])
+                 for j, (y, z) in enumerate(zip(waves(x), waves(centre)))]
+        return [exact(y) for y in (sum(map(abs, here)), sum(moved) + moved[2],
+                                   sum(abs(y - z) for y, z in zip(here, there)))]
+
+
+@pytest.mark.parametrize("alone", [None, 2])
+def test_the_sums_over_all_entries(alone):
+    """Each entry counts, that of c twice in gamma and four times in beta; corners of prisms of the
+    list come near."""
+    rng, closest = rng_for("sums"), [0] * 3
+    for i in range(12 * TORTURE):
+        centre, matrix = (list_prism if i % 2 else random_prism)(rng)
+        for j in range(3):
+            if alone in (None, j):
+                matrix[j][j] = Fraction(1, 100)
+            else:
+                centre[j] = matrix[j][j] = Fraction(0)
+        prism = centre, matrix
+        bounds = kernels.call("row_sums", [*centre, *itertools.chain(*matrix)], 3, DP)
+        for signs in itertools.product((-1, 1), repeat=5):
+            found = sums_at(prism, point_of(prism, [*signs[:3], 0, 0, *signs[3:]]))
+            for k, (x, bound) in enumerate(zip(found, bounds)):
+                assert x <= bound + CLOSE
+                closest[k] = max(closest[k], x / bound)
+    assert min(closest) > 0.99
 
 
 @pytest.mark.parametrize("dp", [1, 2, 4])
