@@ -285,7 +285,7 @@ def check_kind(claim):
     (r0, r1), *others = [element[:2] for element in claim.rotation]
     if others:
         raise check.Unusable("is about two angles; Coq's theorem of existence is about one")
-    if claim.has_parameter:
+    if any(map(any, [wave.parts for wave in claim.waves])):
         raise check.Unusable("has a parameter; Coq's theorem of existence is about one map")
     if claim.polynomial not in ((-1, 1, 1), (1, -1, -1)) or abs(r1) != 1 or r0.denominator != 1:
         raise check.Unusable("has another rotation than `--rotation golden`; Coq's theorem of "

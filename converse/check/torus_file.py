@@ -74,11 +74,6 @@ class TorusClaim:
     hints: dict
     sha256: str
 
-    @property
-    def has_parameter(self):
-        """Does a wave depend on a parameter?"""
-        return any(map(any, [wave.parts for wave in self.waves]))
-
 
 def read_torus(data):
     """The claim of a certificate, if it is whole and has the checksum that it says.

@@ -180,25 +180,6 @@ class SymplecticMap(Dynamics):
             ends_of(name, values.get(name, ends)) for name, ends in zip(self.names, self.ranges))
             ) if values else self
 
-    def scaled(self, factor: Number) -> "SymplecticMap":
-        """The map whose amplitudes are multiplied by a number.
-
-        Parameters
-        ----------
-        factor
-            An exact number, as for SymplecticMap.
-
-        Raises
-        ------
-        TypeError, ValueError
-            The factor is not an exact number.
-        """
-        times = exact(factor)
-        return replace(
-            self, amplitude=tuple(times * p for p in self.amplitude),
-            slopes=tuple(tuple(times * p for p in slope) for slope in self.slopes),
-            name="%s times %s" % (short_text(times), self.name or "the map"))
-
     def tied(self) -> "SymplecticMap":
         """The family whose parameters move together, from all lower to all upper ends.
 

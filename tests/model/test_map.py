@@ -20,7 +20,6 @@ def test_one_family_is_one_value():
     assert StandardMap("0.9") == FourierMap({(1, 0, "-1/2"): "0.9"}) == FourierMap(
         {(1, 0, "3/2"): {"k": 1}}, k=Fraction(9, 10)) != StandardMap("0.90000000001")
     assert MuldoonMap(epsilon="0.01") == MuldoonMap(LINE / 100, LINE / 100, LINE / 50)
-    assert MuldoonMap("0.2", "0.3", "0.4").scaled("1/2") == MuldoonMap("0.1", "0.15", "0.2")
     assert StandardMap("0.9") != "0.9"
 
 
