@@ -233,18 +233,23 @@ class _Run:
     # ---- other starting points
 
     def _is_hard(self):
-        """Did a prism of the first tree need LONG points?  Or is a further tree, of a single value,
-        larger than those that show starting points to be good ones?  Then other starting points are
-        looked for before the tree is finished.  The answer depends on prisms and not on time.  For
-        a single map of one angle, all orbits are long near the last circle."""
-        problem = self._tree.problem
+        """Are other starting points to be looked for before the tree is finished?  The answer
+        depends on prisms and not on time."""
+        return (self._is_long() or self._is_large()) and self._may_link()
+
+    def _is_long(self):
+        """Did a prism of the first tree need LONG points?  For a single map of one angle, all
+        orbits are long near the last circle."""
         counts = self.proof.counts if self.search is None else self.search.counts
-        if self.number == 0:
-            hard = counts.max_NTsteps >= LONG and not (problem.is_flat and not problem.parts)
-        else:                           # what is searched now is counted without the other trees
-            proved = counts.proved if self.search else self._tree.text.count("P")
-            hard = proved > MAX_PROOF_LEAVES and not has_width(problem)
-        return hard and self._may_link()
+        problem = self._tree.problem
+        return self.number == 0 and counts.max_NTsteps >= LONG and \
+            not (problem.is_flat and not problem.parts)
+
+    def _is_large(self):
+        """Has a tree of a single value more prisms than those that show a starting point to be
+        good?"""
+        proved = self._tree.text.count("P") if self.search is None else self.search.counts.proved
+        return proved > MAX_PROOF_LEAVES and not has_width(self._tree.problem)
 
     def _may_link(self):
         """May the tree be linked?  Other points are looked for once, since a second look would try
@@ -261,7 +266,7 @@ class _Run:
         problem = self._tree.problem
         if not self._may_link():
             return False
-        undecided = self.number > 0 or not self._is_hard()
+        undecided = not self._is_long()
         self.tried.add(self.number)
 
         def seconds_left():             # asked for again and again meanwhile
