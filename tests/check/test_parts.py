@@ -407,6 +407,35 @@ def test_links_with_parameters(run):
         assert all(min(ends) > -1e-28 and max(ends) > 1e-6 for ends in closer)  # roots are rounded
 
 
+def refused(tree, *parts, **more):
+    """Which part the first link that may lead out of its region leads to; None if none does."""
+    claim = claim_of(file_of(tree, parts=parts, **more))
+    check.check_tree(claim)
+    try:
+        check.check_links(claim, check.Criterion(claim))
+    except check.NotConfirmed as error:
+        return re.search("is linked to part (.)", str(error))[1]
+    return None
+
+
+def test_no_displacement_is_taken_for_another():
+    """Of links that differ in one thing alone, the first leads from an x* to itself."""
+    lower, upper, wide = "0.4111 0.1251", "0.6613 0.1251", ("0.5 3", "0.5 3")
+    for start, found in (XSTAR, None), (ASIDE, "b"):    # to two parts
+        parts = (XSTAR, lower, HALF[1], "P"), (start, upper, HALF[1], "P")
+        assert refused("0ab", *parts) == found
+    for start, found in (ASIDE, None), (XSTAR, "b"):    # from two parts
+        parts = (start, *wide, "b"), (ASIDE, *wide, "P")
+        assert refused("0ba", *parts, xstar=ASIDE) == found
+    more = {"waves": [wave + " 0.1" for wave in SYMMETRIC]}
+    claim = claim_of(file_of("2PP", **more))            # with two sets of parameters
+    for cell, found in (check.ROOT, None), (halves(check.ROOT, 2)[0], "a"):
+        moved = check.displacement(check.Criterion(claim), cell, claim.xstar,
+                                   tuple(map(Fraction, ASIDE.split())))
+        region = region_of(claim, check.ROOT, moved, Fraction(1, 10 ** 9))
+        assert refused("2aa", (ASIDE, *region, "P"), **more) == found
+
+
 def random_link(draw):
     """A claim with parameters, and another x*."""
     count = draw.randint(0, 2)
