@@ -54,6 +54,16 @@ def test_the_least_single_value_of_the_line_in_the_list():
 
 
 @dear
+@pytest.mark.parametrize("epsilon, prisms, points", [
+    (row[0].partition(" ")[0], *map(number, row[2:4])) for row in rows(
+        "speed.md", "down to epsilon | CPU seconds | prisms proved | longest orbit | confirmed by "
+        "`converse-check`, CPU seconds")[1:]])
+def test_the_end_of_the_line(epsilon, prisms, points):
+    counts = sharper(chart.on_line(epsilon, "0.0280", together=True))
+    assert (counts.proved, counts.max_NTsteps) == (prisms, points)
+
+
+@dear
 def test_the_longest_orbits_of_the_standard_map():
     counts = sharper(Problem(MuldoonMap("0.9717", 0, 0)))
     assert [counts.proved, counts.max_NTsteps] == said(
