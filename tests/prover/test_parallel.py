@@ -226,7 +226,7 @@ def look(self):
     if there:
         kill()
 run._Run._look = look
-prove(LONG, method="loewner", jobs=2, **{"resume" if resume else "backup": path})
+prove(jobs=2, **({"resume": path} if resume else {"source": LONG, "backup": path}))
 """
 
 
