@@ -436,6 +436,22 @@ def test_no_displacement_is_taken_for_another():
         assert refused("2aa", (ASIDE, *region, "P"), **more) == found
 
 
+def test_the_bound_of_beta_holds_along_the_segment():
+    """Of one wave, whose beta is 2 - p sin(x + phase): at points of short and long segments."""
+    draw, near = random.Random(11), 1
+    for _ in range(100):
+        phase, p = round(draw.uniform(-1, 1), 3), draw.choice((-1, 1))
+        criterion = check.Criterion(claim_of(file_of("P", waves=["1 0 %s %d" % (phase, p)])))
+        middle, w = Fraction(draw.randint(-400, 400), 100), Fraction(draw.randint(0, 200), 100)
+        bound, mixed, other = check.upper_beta(criterion.claim, criterion.fixed, check.ROOT,
+                                               (middle, Fraction(0)), (w, Fraction(0)))
+        most = max(2 - p * math.sin(float(middle + w * n / 40) + math.pi * phase)
+                   for n in range(-20, 21))
+        assert bound >= most - 1e-12 and (mixed, other) == (0, 2)
+        near = min(near, float(bound) - most)
+    assert near < 1e-3
+
+
 def random_link(draw):
     """A claim with parameters, and another x*."""
     count = draw.randint(0, 2)
