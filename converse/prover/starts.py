@@ -158,6 +158,10 @@ class _Image:
         link = Link.between(self.weakest, self.largest, self.xstar, _text(point))
         return halved(self.problem.part(region_around(self.box, link)), _text(point))
 
+    def is_half(self, point):
+        """Is the region over this point halved?"""
+        return folds(self.part(point), _text(point))
+
     def grow(self, points, settings, most):
         """The trees over the points, of `most` leaves each; [] if time was up."""
         parts = [self.part(point) for point in points]
@@ -183,7 +187,9 @@ class _Image:
 
 def _best_start(image, others):
     """A starting point over which the box's image is proved where the waves bend least; if none is
-    found, that over which the fewest prisms resist; None if that is x* or time is up.
+    found, that over which the fewest prisms resist; None if that is x* or time is up.  The prisms
+    of half a region are compared with those of whole ones as they are.  If no point is good enough,
+    points are looked for once more, and the half's count twice.
 
     others: points to be tried first."""
     start = tuple(Fraction(x) for x in image.xstar)
@@ -194,16 +200,20 @@ def _best_start(image, others):
         new = [point for point in dict.fromkeys(points) if point not in known]
         most = min([MAX_TRY_LEAVES, *(2 * leaves for _, leaves in sorted(known.values())[:1])])
         grown = image.grow(new, Settings("loewner", TRY_DEPTH, stubborn=True), most)
-        known.update(zip(new, map(_score, grown)))
+        known.update((point, _score(one, weight if image.is_half(point) else 1))
+                     for point, one in zip(new, grown))
         return min(points, key=known.__getitem__) if len(grown) == len(new) else None
 
     tried = set()
-    for point in chain(others, _candidates(look, known, start, _ways(image.problem))):
-        if point not in tried:
-            grown = image.proof(point)
-            if grown and tree.complete(grown.text) and not grown.counts.undecided:
-                return point
-        tried.add(point)
+    for weight in 1, 2:
+        known.update((point, tuple(weight * x for x in score)) for point, score in known.items()
+                     if image.is_half(point))
+        for point in chain(others, _candidates(look, known, start, _ways(image.problem))):
+            if point not in tried:
+                grown = image.proof(point)
+                if grown and tree.complete(grown.text) and not grown.counts.undecided:
+                    return point
+            tried.add(point)
     best = min(known, key=known.__getitem__, default=start)
     return None if best == start or known[best][0] == inf else best
 
@@ -268,11 +278,11 @@ def _reaches(cell, signs):
                for sign, i, k in zip(signs, cell[0][2:], cell[1][2:]))
 
 
-def _score(grown) -> Tuple[float, int]:
-    """How many prisms resist, and how many there are."""
+def _score(grown, weight) -> Tuple[float, int]:
+    """How many prisms resist, and how many there are, each counted `weight` times."""
     counts = grown.counts
-    return (inf if grown.cells else counts.undecided,
-            counts.proved + counts.undecided + len(grown.cells))
+    return (inf if grown.cells else weight * counts.undecided,
+            weight * (counts.proved + counts.undecided + len(grown.cells)))
 
 
 def _text(point):

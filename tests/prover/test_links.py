@@ -4,6 +4,7 @@ import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -414,10 +415,10 @@ def test_a_part_that_grows_too_large_is_linked_further(linked, easily, monkeypat
     monkeypatch.setattr(run, "MAX_PROOF_LEAVES", 40)
     proof, same = (prove(line("0.015"), method="loewner", jobs=jobs) for jobs in (1, 3))
     assert proof.verify() and len(proof.parts) == 10
-    assert timeless(proof) == timeless(same) and asked[7:] == asked[:7]
-    assert [found for _, found in asked[:7]] == [True] * 4 + [False] * 3
+    assert timeless(proof) == timeless(same) and asked[9:] == asked[:9]
+    assert [found for _, found in asked[:9]] == [True] * 5 + [False] * 4
     monkeypatch.setattr(run, "LONG", native.ORDINARY)
-    assert prove(line("0.015"), method="loewner").parts and len(asked) > 14
+    assert prove(line("0.015"), method="loewner").parts and len(asked) > 18
     assert not prove(line("0.015", "0.01501"), method="loewner").parts
 
 
@@ -578,3 +579,26 @@ def test_the_core_has_the_prisms_that_links_mean(digits):
     for k in range(1, 41):
         cell = (2 ** k // 2, 2 ** k // 2, 0, 0, 0), (k, k, 0, 0, 0), 0
         assert native.grow(task, [cell], 9, 1, False).text != "P"
+
+
+def test_halves_of_regions_do_not_hide_a_better_point():
+    class Image:
+        """Only regions over points off the diagonal are proved; over the diagonal they are halved,
+        and their halves have fewer prisms that resist."""
+
+        xstar = "0.8", "0.8"
+        problem = replace(line("0.015"), axes=(1, 0, 0, 1))
+
+        def is_half(self, point):
+            return point[0] == point[1]
+
+        def grow(self, points, settings, most):
+            resist = [4 if self.is_half(point) else 5 for point in points]
+            return [SimpleNamespace(cells=[], counts=Counts(undecided=n)) for n in resist]
+
+        def proof(self, point):
+            half = self.is_half(point)
+            return SimpleNamespace(text="U" if half else "P", counts=Counts(undecided=int(half)))
+
+    image = Image()
+    assert not image.is_half(starts._best_start(image, []))
