@@ -25,7 +25,7 @@ def longest(problem, xstar) -> int:
 
     No proof is known to need more than native.ORDINARY where waves depend on two combinations of
     the angles."""
-    ends = list(product((0, (1 << CUTS) - 1), repeat=len(problem.parts)))
+    ends = product(*((0, (1 << CUTS) - 1) if any(part) else (0,) for part in problem.parts))
     if not problem.is_flat or not all(_all_proved(problem, xstar, end) for end in ends):
         return native.ORDINARY
     return 0
