@@ -189,7 +189,7 @@ def _best_start(image, others):
     """A starting point over which the box's image is proved where the waves bend least; if none is
     found, that over which the fewest prisms resist; None if that is x* or time is up.  The prisms
     of half a region are compared with those of whole ones as they are.  If no point is good enough,
-    points are looked for once more, and the half's count twice.
+    a good one is looked for once more, and the half's count twice.
 
     others: points to be tried first."""
     start = tuple(Fraction(x) for x in image.xstar)
@@ -204,7 +204,7 @@ def _best_start(image, others):
                      for point, one in zip(new, grown))
         return min(points, key=known.__getitem__) if len(grown) == len(new) else None
 
-    tried = set()
+    best, tried = None, set()
     for weight in 1, 2:
         known.update((point, tuple(weight * x for x in score)) for point, score in known.items()
                      if image.is_half(point))
@@ -214,7 +214,7 @@ def _best_start(image, others):
                 if grown and tree.complete(grown.text) and not grown.counts.undecided:
                     return point
             tried.add(point)
-    best = min(known, key=known.__getitem__, default=start)
+        best = best or min(known, key=known.__getitem__, default=start)
     return None if best == start or known[best][0] == inf else best
 
 

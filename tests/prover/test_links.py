@@ -415,10 +415,10 @@ def test_a_part_that_grows_too_large_is_linked_further(linked, easily, monkeypat
     monkeypatch.setattr(run, "MAX_PROOF_LEAVES", 40)
     proof, same = (prove(line("0.015"), method="loewner", jobs=jobs) for jobs in (1, 3))
     assert proof.verify() and len(proof.parts) == 10
-    assert timeless(proof) == timeless(same) and asked[9:] == asked[:9]
-    assert [found for _, found in asked[:9]] == [True] * 5 + [False] * 4
+    assert timeless(proof) == timeless(same) and asked[7:] == asked[:7]
+    assert [found for _, found in asked[:7]] == [True] * 4 + [False] * 3
     monkeypatch.setattr(run, "LONG", native.ORDINARY)
-    assert prove(line("0.015"), method="loewner").parts and len(asked) > 18
+    assert prove(line("0.015"), method="loewner").parts and len(asked) > 14
     assert not prove(line("0.015", "0.01501"), method="loewner").parts
 
 
