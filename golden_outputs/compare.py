@@ -7,6 +7,7 @@ With --update our own golden outputs are written anew.  What the thesis reports 
 verbatim and is compared with the run --as-printed.  Exit status 1: something differs.
 """
 
+import argparse
 import difflib
 import re
 import subprocess
@@ -74,8 +75,10 @@ def differences(expected, found, name):
     return list(difflib.unified_diff(expected, found, "golden " + name, "this run", lineterm=""))
 
 
-def main(update=False):
-    bad = []
+def main():
+    parser = argparse.ArgumentParser(description="Compares reports with the golden outputs.")
+    parser.add_argument("--update", action="store_true", help="write our own golden outputs anew")
+    update, bad = parser.parse_args().update, []
     for problem in sorted([*INPUTS.glob("*.in"), *INPUTS.glob("*.json")]):
         for mode, flags in modes(problem).items():
             name = "%s/%s.out" % (mode, problem.stem)
@@ -98,4 +101,4 @@ def main(update=False):
 
 
 if __name__ == "__main__":
-    sys.exit(main(update="--update" in sys.argv[1:]))
+    sys.exit(main())
