@@ -241,47 +241,86 @@ def test_a_killed_coordinator_goes_on_from_its_backup(proof, tmp_path):
     assert timeless(prove(resume=path)) == timeless(Proof.load(path)) == proof
 
 
-@pytest.fixture
-def cluster(tmp_path, monkeypatch):
-    """cluster(n): a Dask cluster of n workers here, and a client of it, asked at every turn."""
+@pytest.fixture(scope="module")
+def dask(tmp_path_factory):
+    """A Dask cluster here, and a client of it.  A worker takes a second to start."""
     distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+            n_workers=0, threads_per_worker=1, processes=True, dashboard_address=None,
+            local_directory=str(tmp_path_factory.mktemp("dask"))) as made, \
+            distributed.Client(made, timeout=PATIENCE) as client:
+        yield made, client
+
+
+@pytest.fixture
+def cluster(dask, monkeypatch):
+    """cluster(n): the cluster and its client, when it has n workers; it is asked at every turn."""
+    made, client = dask
     monkeypatch.setattr(workers, "ASK_SECONDS", 0)
 
-    @contextlib.contextmanager
     def cluster(n):
-        with distributed.LocalCluster(
-                n_workers=n, threads_per_worker=1, processes=True, dashboard_address=None,
-                local_directory=str(tmp_path)) as made, \
-                distributed.Client(made, timeout=PATIENCE) as client:
-            yield made, client
+        made.scale(n)
+        end = time.monotonic() + PATIENCE
+        while len(client.nthreads()) != n:
+            assert time.monotonic() < end
+            time.sleep(0.005)
+        return dask
     return cluster
-
-
-def test_dask_workers_that_join_later(proof, divided, ends, cluster):
-    """They are given work: one worker has two tasks at a time."""
-    with cluster(1) as (made, client):
-        executor = client.get_executor()
-        submit, submitted = executor.submit, []
-
-        def submit_and_grow(*args):
-            if len(submitted) == 3:
-                made.scale(2)
-            submitted.append(args)
-            return submit(*args)
-
-        executor.submit = submit_and_grow
-        ends(lambda self: len(self.search.pool.running) > 2)
-        half = prove(line("0.0140", "0.0280"), method="loewner", executor=executor)
-        assert not half.all_decided and submitted
 
 
 def test_dask_without_workers(proof, divided, cluster):
     """They are waited for, which is said; a cluster that adapts starts one, since there is a
     task."""
-    with cluster(0) as (made, client):
-        made.adapt(minimum=0, maximum=1)
-        with pytest.warns(RuntimeWarning, match="no workers; waiting"):
-            assert timeless(prove(LONG, method="loewner", executor=client.get_executor())) == proof
+    made, client = cluster(0)
+    adaptive = made.adapt(minimum=0, maximum=1)
+    with pytest.warns(RuntimeWarning, match="no workers; waiting"):
+        assert timeless(prove(LONG, method="loewner", executor=client.get_executor())) == proof
+    adaptive.stop()
+
+
+def test_dask_without_this_program(divided, cluster, monkeypatch):
+    """A worker that lacks it would die of the first task: it is not sent."""
+    monkeypatch.setattr(workers, "PROBE", workers.PROBE.replace("converse", "no_such_package"))
+    _, client = cluster(1)
+    executor = client.get_executor()
+    monkeypatch.setattr(executor, "submit", None)
+    with pytest.raises(workers.WorkersGone,
+                       match="needs converse .* has none .*no_such_package"):
+        prove(LONG, method="loewner", executor=executor)
+
+
+def test_dask_workers_that_join_later(proof, divided, ends, cluster):
+    """They are given work: one worker has two tasks at a time."""
+    made, client = cluster(1)
+    executor = client.get_executor()
+    submit, submitted = executor.submit, []
+
+    def submit_and_grow(*args):
+        if len(submitted) == 3:
+            made.scale(2)
+        submitted.append(args)
+        return submit(*args)
+
+    executor.submit = submit_and_grow
+    ends(lambda self: len(self.search.pool.running) > 2)
+    half = prove(line("0.0140", "0.0280"), method="loewner", executor=executor)
+    assert not half.all_decided and submitted
+
+
+def test_dask_loses_a_worker(proof, divided, cluster):
+    _, client = cluster(2)
+    pid = next(iter(client.run(os.getpid).values()))
+    executor, submitted = client.get_executor(), []
+
+    def submit(*args, submit=executor.submit):
+        submitted.append(submit(*args))
+        if len(submitted) == 3:
+            os.kill(pid, signal.SIGKILL)
+        return submitted[-1]
+
+    executor.submit = submit
+    assert timeless(prove(LONG, method="loewner", executor=executor, jobs=4)) == proof
+    assert len(submitted) > 3
 
 
 def test_a_scheduler_that_does_not_answer_is_called_so():
@@ -296,17 +335,6 @@ def test_a_scheduler_that_does_not_answer_is_called_so():
     executor._client = executor
     with pytest.warns(RuntimeWarning, match="the Dask scheduler does not answer; waiting"):
         assert workers.WorkerPool(executor, None).size == 0
-
-
-def test_dask_without_this_program(divided, cluster, monkeypatch):
-    """A worker that lacks it would die of the first task: it is not sent."""
-    monkeypatch.setattr(workers, "PROBE", workers.PROBE.replace("converse", "no_such_package"))
-    with cluster(1) as (_, client):
-        executor = client.get_executor()
-        monkeypatch.setattr(executor, "submit", None)
-        with pytest.raises(workers.WorkersGone,
-                           match="needs converse .* has none .*no_such_package"):
-            prove(LONG, method="loewner", executor=executor)
 
 
 def test_dask_loses_its_scheduler(divided, tmp_path, proof):
@@ -338,7 +366,7 @@ sys.exit(main())
         scheduler = start("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0")
         address = next(re.search(r"tcp://127.0.0.1:[0-9]+", said)[0] for said in scheduler.stderr
                        if "Scheduler at" in said)
-        start("distributed.cli.dask_worker", address, "--nworkers", "1", "--nthreads", "1")
+        start("distributed.cli.dask_worker", address, "--no-nanny", "--nthreads", "1")
         (tmp_path / "a.in").write_text(input_text(LONG))
         result = subprocess.run(
             [sys.executable, "-c", code, str(scheduler.pid), "--dask", address, "--method",
@@ -357,26 +385,6 @@ sys.exit(main())
 def input_text(problem):
     return "\n".join("%s %s" % tuple(map(decimal_text, pair))
                      for pair in zip(problem.centre, problem.half)) + "\n"
-
-
-def test_dask_loses_a_worker(proof, tmp_path, divided):
-    distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(n_workers=3, threads_per_worker=1, processes=True,
-                                  dashboard_address=None,
-                                  local_directory=str(tmp_path)) as cluster, \
-            distributed.Client(cluster, timeout=PATIENCE) as client:
-        pid = next(iter(client.run(os.getpid).values()))
-        executor, submitted = client.get_executor(), []
-
-        def submit(*args, submit=executor.submit):
-            submitted.append(submit(*args))
-            if len(submitted) == 3:
-                os.kill(pid, signal.SIGKILL)
-            return submitted[-1]
-
-        executor.submit = submit
-        assert timeless(prove(LONG, method="loewner", executor=executor, jobs=4)) == proof
-        assert len(submitted) > 3
 
 
 class Late(Inline):
