@@ -1,6 +1,7 @@
 """The command: its flags, its messages, its exit status."""
 
 import hashlib
+import io
 import os
 import re
 import subprocess
@@ -28,6 +29,17 @@ def output(command, sample):
     return timeless(out)
 
 
+@pytest.fixture
+def run(capfd, monkeypatch):
+    """Runs the command in this process: (exit status, stdout, stderr).  Other processes run it for
+    the fixture `output`, which its reports equal."""
+    def run(*arguments, stdin=b""):
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(stdin)))
+        status = main([str(argument) for argument in arguments])
+        return (status, *capfd.readouterr())
+    return run
+
+
 def timeless(text):
     return re.sub(r"took [0-9.]+ seconds", "took ... seconds", text)
 
@@ -48,33 +60,33 @@ def test_the_1989_way(output):
     ["--precision", "35"], ["-g", "off"], ["-goff"], ["--graphics=off"], ["-s"], ["--stubborn"],
     ["-sd30", "-p35"], ["-p", "35", "-s", "-d", "30"], ["-d", "30", "-goff", "-s", "-p35"],
 ])
-def test_flags_in_any_form_and_order(command, sample, output, arguments):
+def test_flags_in_any_form_and_order(run, sample, output, arguments):
     for source in ([sample], [], ["-"]):
-        status, out, err = command(*arguments, *source,
+        status, out, err = run(*arguments, *source,
                                    stdin=b"" if source == [sample] else sample.read_bytes())
         assert (status, timeless(out), err) == (0, output, "")
         if arguments:
             break
 
 
-def test_input_name_before_the_flags(command, sample, output):
-    assert timeless(command(sample, "-d", "30")[1]) == output
+def test_input_name_before_the_flags(run, sample, output):
+    assert timeless(run(sample, "-d", "30")[1]) == output
 
 
-def test_depth_and_undecided(command, sample):
-    status, out, err = command("-d3", sample)
+def test_depth_and_undecided(run, sample):
+    status, out, err = run("-d3", sample)
     assert status == 1 and err == ""
     assert "I could not decide" in out and "Undecided prisms : 1\n" in out
-    stubborn = command("-d3", "-s", sample)
+    stubborn = run("-d3", "-s", sample)
     assert stubborn[0] == 1 and "Undecided prisms : 1\n" not in stubborn[1]
 
 
-def test_precision(command, sample):
-    assert "Arithmetic : 50 decimal places" in command("-p", "50", sample)[1]
+def test_precision(run, sample):
+    assert "Arithmetic : 50 decimal places" in run("-p", "50", sample)[1]
 
 
-def test_verbose(command, sample, output):
-    status, out, err = command("-t", sample)
+def test_verbose(run, sample, output):
+    status, out, err = run("-t", sample)
     assert status == 0 and err == ""
     leaf = re.compile(r"(proved|symmetric|undecided) +\(\S+, \S+\) \+- \(\S+, \S+\), "
                       r"[0-9]+ cuts, [0-9]+ steps")
@@ -84,59 +96,59 @@ def test_verbose(command, sample, output):
     proved = sum(line.startswith("proved") for line in found)
     assert "Of the %d successful prisms" % proved in out and len(found) > proved
     assert lines[lines.index("+" * 48) + 1] == found[0]
-    assert command("--verbose", sample)[1].count(" cuts, ") == len(found)
+    assert run("--verbose", sample)[1].count(" cuts, ") == len(found)
 
 
-def test_as_printed(command, sample):
-    status, out, err = command("--as-printed", sample)
+def test_as_printed(run, sample):
+    status, out, err = run("--as-printed", sample)
     assert status == 4
     assert one_line(err) and "not a proof" in err
     assert out.endswith(" seconds.\n") and "Program :" not in out and "Method" not in out
-    status, out, err = command("--as-printed", "-d2", sample)
+    status, out, err = run("--as-printed", "-d2", sample)
     assert status == 1 and one_line(err)
 
 
-def test_help_and_version(command):
-    status, out, err = command("--help")
+def test_help_and_version(run):
+    status, out, err = run("--help")
     assert status == 0 and err == ""
     for flag in ("-d", "-b", "-r", "-g", "-p", "-s", "-t", "--as-printed", "--depth", "--backup",
                  "--restore", "--graphics", "--precision", "--stubborn", "--verbose", "--version"):
         assert flag in out
-    assert command("--version") == (0, "converse %s\n" % __version__, "")
+    assert run("--version") == (0, "converse %s\n" % __version__, "")
 
 
-def test_figure(command, sample, output, tmp_path):
+def test_figure(run, sample, output, tmp_path):
     path = tmp_path / "figure.ps"
-    status, out, err = command("-g", path, sample)
+    status, out, err = run("-g", path, sample)
     assert (status, timeless(out), err) == (0, output, "")
     assert path.read_text("ascii").startswith("%!PS-Adobe")
     path = tmp_path / "figure.svg"
-    assert command("-d3", "-g%s" % path, sample)[0] == 1
+    assert run("-d3", "-g%s" % path, sample)[0] == 1
     assert "undecided (1)" in path.read_text("utf-8")
 
 
-def test_backup_and_restore(command, sample, output, tmp_path):
+def test_backup_and_restore(run, sample, output, tmp_path):
     backup = tmp_path / "backup"
-    status, out, err = command("-b", backup, sample)
+    status, out, err = run("-b", backup, sample)
     sha256 = hashlib.sha256(backup.read_bytes()).hexdigest()
     assert (status, timeless(out), err) == (0, output + "Proof file : SHA-256 %s\n" % sha256, "")
     assert Proof.load(backup).no_tori
     for arguments in (["-r", backup], ["-r%s" % backup, "-b%s" % backup],
                       ["--restore", backup, "--backup", tmp_path / "other.gz"]):
-        status, out, err = command(*arguments)
+        status, out, err = run(*arguments)
         assert (status, timeless(out).split("Restored")[0], err) == (0, output, "")
         assert "Restored : 121 prisms were read from a backup, which is believed\n" in out
     assert Proof.load(tmp_path / "other.gz").no_tori
     assert hashlib.sha256(backup.read_bytes()).hexdigest() == sha256
 
 
-def test_restore_alone(command, sample, root, tmp_path):
+def test_restore_alone(run, sample, root, tmp_path):
     """Everything is taken from the file, which is kept up to date; it may go deeper."""
     backup = tmp_path / "backup"
     loewner = "--method", "loewner", "--together"
-    assert command("-d9", *loewner, "-s", "-b", backup, root / "inputs" / "trig180.in")[0] == 1
+    assert run("-d9", *loewner, "-s", "-b", backup, root / "inputs" / "trig180.in")[0] == 1
     half = Proof.load(backup)
-    status, out, err = command("-r", backup, "-d", "120")
+    status, out, err = run("-r", backup, "-d", "120")
     assert (status, err) == (0, "") and "on the segment from (" in out
     whole = Proof.load(backup)
     assert whole.no_tori and whole.problem == half.problem and whole.depth == 120
@@ -146,23 +158,23 @@ def test_restore_alone(command, sample, root, tmp_path):
             ("the method", ["-p", "36"]), ("the method", ["--as-printed"]),
             ("x* and", ["--xstar", "0.8", "0.95"]), ("--together", ["--together"]),
             ("leave out the input", [sample])):
-        status, out, err = command("-r", backup, *arguments)
+        status, out, err = run("-r", backup, *arguments)
         assert (status, out) == (2, "") and one_line(err) and words in err
     assert Proof.load(backup) == whole
 
 
-def test_a_backup_is_never_overwritten(command, sample, root, tmp_path):
+def test_a_backup_is_never_overwritten(run, sample, root, tmp_path):
     backup = tmp_path / "backup"
-    assert command("-b", backup, sample)[0] == 0
+    assert run("-b", backup, sample)[0] == 0
     before = backup.read_bytes()
     for path in (backup, tmp_path / "." / "backup", os.path.relpath(backup)):
-        status, out, err = command("-b", path, root / "inputs" / "trig276.in")
+        status, out, err = run("-b", path, root / "inputs" / "trig276.in")
         assert (status, out) == (2, "") and one_line(err) and "exists" in err and "-r" in err
     assert backup.read_bytes() == before
 
 
-def test_a_part_of_the_torus(command):
-    status, out, err = command(stdin=GOOD.replace(b"1.0 1.0", b"0.5 0.25", 1))
+def test_a_part_of_the_torus(run):
+    status, out, err = run(stdin=GOOD.replace(b"1.0 1.0", b"0.5 0.25", 1))
     assert (status, err) == (3, "")
     assert "whose successor of x* lies in the region" in out and "only a part of the torus" in out
 
@@ -175,28 +187,28 @@ def test_python_m(sample):
         assert result.returncode == status and b"Traceback" not in result.stderr
 
 
-def test_marked_backup_is_no_proof(command, sample, tmp_path):
+def test_marked_backup_is_no_proof(run, sample, tmp_path):
     backup = tmp_path / "backup"
-    assert command("--as-printed", "-b", backup, sample)[0] == 4
+    assert run("--as-printed", "-b", backup, sample)[0] == 4
     assert "kind: as printed, not a proof\n" in backup.read_text()
-    status, out, err = command("-r", backup)
+    status, out, err = run("-r", backup)
     assert status == 4 and one_line(err) and "not a proof" in err
 
 
-def test_the_sharper_method(command, root, tmp_path):
+def test_the_sharper_method(run, root, tmp_path):
     sample, path = root / "inputs" / "trig180.in", tmp_path / "a.proof"
-    status, out, err = command("--method", "loewner", "--together", "-b", path, "--jobs", "2",
+    status, out, err = run("--method", "loewner", "--together", "-b", path, "--jobs", "2",
                                sample)
     assert status == 0 and err == ""
     assert out.startswith("THEOREM\n") and "\n  and for every multiple s >= 1 of the upper" in out
     assert "\nVerify     converse-check %s\n" % path in out or len(str(path)) > 60
     assert "SHA-256    " + hashlib.sha256(path.read_bytes()).hexdigest() in out
-    again = command("-r", path)
+    again = run("-r", path)
     assert again[0] == 0 and hashlib.sha256(path.read_bytes()).hexdigest() in again[1]
     picture = tmp_path / "a.svg"
-    assert command("--method=loewner", "--together", "-g", picture, sample)[0] == 0
+    assert run("--method=loewner", "--together", "-g", picture, sample)[0] == 0
     assert b"<svg" in picture.read_bytes()[:1000]
-    leaves = command("--method=loewner", "--together", "-t", sample)[1]
+    leaves = run("--method=loewner", "--together", "-t", sample)[1]
     assert leaves.count("proved  ") == int(
         re.search(r"([0-9,]+) prisms proved", out)[1].replace(",", ""))
 
@@ -214,8 +226,8 @@ def test_the_sharper_method(command, root, tmp_path):
     (["-p", "40", "--method", "loewner"], "-p is of the thesis's arithmetic"),
     (["/missing/file.in"], "/missing/file.in"), (["/"], "/"),
 ])
-def test_bad_usage(command, arguments, word):
-    status, out, err = command(*arguments, stdin=GOOD)
+def test_bad_usage(run, arguments, word):
+    status, out, err = run(*arguments, stdin=GOOD)
     assert status == 2 and out == ""
     assert one_line(err) and word in err
 
@@ -227,14 +239,14 @@ def test_bad_usage(command, arguments, word):
     (GOOD.replace(b"0.617", b"0.617 1"), 3), (GOOD.replace(b" 0.0025", b""), 3),
     (bytes(range(256)), 1), (b"\0" * 100, 1),
 ])
-def test_bad_input(command, text, line, tmp_path):
-    status, out, err = command("-b", tmp_path / "b", "-g", tmp_path / "g.ps", stdin=text)
+def test_bad_input(run, text, line, tmp_path):
+    status, out, err = run("-b", tmp_path / "b", "-g", tmp_path / "g.ps", stdin=text)
     assert status == 2 and out == ""
     assert one_line(err) and ": <stdin>, line %d: " % line in err and "; " in err
     assert list(tmp_path.iterdir()) == []
     path = tmp_path / "bad.in"
     path.write_bytes(text)
-    status, out, err = command(path)
+    status, out, err = run(path)
     assert status == 2 and one_line(err) and "%s, line %d: " % (path, line) in err
 
 
@@ -242,8 +254,8 @@ def test_bad_input(command, text, line, tmp_path):
     GOOD.replace(b"\n", b"\r\n"), GOOD.replace(b" ", b"\t"), b"\n\n" + GOOD,
     GOOD.replace(b"\n", b"\n\n"), GOOD.rstrip(b"\n"),
 ])
-def test_layouts(command, text, output):
-    out = timeless(command(stdin=text)[1])
+def test_layouts(run, text, output):
+    out = timeless(run(stdin=text)[1])
     assert out.split("+" * 48)[1] == output.split("+" * 48)[1]
 
 
@@ -256,33 +268,33 @@ def test_foreign_letters_in_comments(command, environment, tmp_path):
     assert Proof.load(tmp_path / "b").problem.comments == ("\u03b5 \u2264 1",)
 
 
-def test_zero_half_widths(command):
-    status, out, err = command(stdin=b"0.32 0\n0.32 0\n0.64 0\n1 1\n1 1\n")
+def test_zero_half_widths(run):
+    status, out, err = run(stdin=b"0.32 0\n0.32 0\n0.64 0\n1 1\n1 1\n")
     assert (status, err) == (0, "")
     assert "a = 0.320000\nb = 0.320000\nc = 0.640000\n" in out
 
 
 @pytest.mark.parametrize("flag", ["-b", "-g"])
-def test_unwritable_places(command, flag, sample, tmp_path):
+def test_unwritable_places(run, flag, sample, tmp_path):
     plain = tmp_path / "plain"
     plain.write_text("")
     (tmp_path / "a.ps").mkdir()
     for place in (tmp_path / "a.ps", tmp_path / "missing" / "a.ps", plain / "a.ps", "/proc/a.ps",
                   ""):
-        status, out, err = command(flag, place, sample)
+        status, out, err = run(flag, place, sample)
         assert status == 2 and out == "" and one_line(err)
         assert str(place) in err
 
 
-def test_backup_over_something_else(command, sample, tmp_path):
+def test_backup_over_something_else(run, sample, tmp_path):
     path = tmp_path / "notes"
     path.write_text("precious")
-    status, out, err = command("-b", path, sample)
+    status, out, err = run("-b", path, sample)
     assert status == 2 and out == "" and one_line(err) and "notes" in err
     assert path.read_text() == "precious"
 
 
-def test_figure_over_something_else(command, sample, tmp_path):
+def test_figure_over_something_else(run, sample, tmp_path):
     path = tmp_path / "copy.svg"
     path.write_bytes(sample.read_bytes())
     (tmp_path / "link.ps").symlink_to(path)
@@ -290,7 +302,7 @@ def test_figure_over_something_else(command, sample, tmp_path):
                       [sample, "-b", tmp_path / "b.ps", "-g", tmp_path / "b.ps"],
                       [path, "-g", "%s/./copy.svg" % tmp_path], [path, "-g", tmp_path / "link.ps"],
                       [sample, "-b", tmp_path / "b.ps", "-g", "%s/./b.ps" % tmp_path]):
-        status, out, err = command(*arguments)
+        status, out, err = run(*arguments)
         assert status == 2 and out == "" and one_line(err) and "overwrite" in err
     with open(path, "rb") as file, subprocess.Popen(
             [COMMAND, "-g", path], stdin=file, stdout=subprocess.PIPE,
@@ -299,9 +311,9 @@ def test_figure_over_something_else(command, sample, tmp_path):
     assert path.read_bytes() == sample.read_bytes()
 
 
-def test_bad_backups(command, sample, root, tmp_path):
+def test_bad_backups(run, sample, root, tmp_path):
     good = tmp_path / "good"
-    assert command("-b", good, sample)[0] == 0
+    assert run("-b", good, sample)[0] == 0
     truncated, edited, longer = (tmp_path / name for name in ("truncated", "edited", "longer"))
     truncated.write_bytes(good.read_bytes()[:-40])
     longer.write_bytes(good.read_bytes() + b"\n")
@@ -309,31 +321,23 @@ def test_bad_backups(command, sample, root, tmp_path):
     for path, word in ((truncated, "truncated"), (edited, "damaged"), (sample, "not a proof file"),
                        (longer, "something follows the end"), (tmp_path, "is a directory"),
                        (tmp_path / "missing", "cannot be read")):
-        status, out, err = command("-r", path)
+        status, out, err = run("-r", path)
         assert status == 2 and out == "" and one_line(err)
         assert str(path) in err and word in err
 
 
-def test_main_returns_the_status(sample, capsys):
-    assert main(["-d2", str(sample)]) == 1
-    assert main(["--version"]) == 0
-    assert main(["-dx"]) == 2
-    out, err = capsys.readouterr()
-    assert "I could not decide" in out and one_line(err)
-
-
 @pytest.mark.parametrize("name", ["a.proof", "a.proof.gz", "a.svg", "a.ps"])
-def test_the_figure_destroys_no_proof(command, sample, tmp_path, name):
-    assert command("-b", tmp_path / name, sample)[0] == 0
+def test_the_figure_destroys_no_proof(run, sample, tmp_path, name):
+    assert run("-b", tmp_path / name, sample)[0] == 0
     before = (tmp_path / name).read_bytes()
-    status, out, err = command("-g", tmp_path / name, sample)
+    status, out, err = run("-g", tmp_path / name, sample)
     assert (status, out) == (2, "") and one_line(err) and name in err
     assert (tmp_path / name).read_bytes() == before
 
 
 @pytest.mark.parametrize("name", ["a", "a.json", "a.in", "a.svg.txt", "a.csv"])
-def test_a_figure_has_a_figure_s_name(command, sample, tmp_path, name):
-    status, out, err = command("-g", tmp_path / name, sample)
+def test_a_figure_has_a_figure_s_name(run, sample, tmp_path, name):
+    status, out, err = run("-g", tmp_path / name, sample)
     assert (status, out) == (2, "")
     assert one_line(err) and ".svg or .png or .pdf or .ps or .eps" in err
     assert list(tmp_path.iterdir()) == []
@@ -343,36 +347,36 @@ def test_a_figure_has_a_figure_s_name(command, sample, tmp_path, name):
     ("a.EPS", [b"precious", b"%!PS-Adobe-3.0\n%%Creator: another\n"]),
     ("a.svg", [b"<?xml version='1.0'?><svg/>"]),
     ("a.png", [b"precious"]), ("a.pdf", [b"precious"])])
-def test_a_figure_replaces_nothing_but_a_figure(command, sample, tmp_path, capsys, name, others):
+def test_a_figure_replaces_nothing_but_a_figure(run, sample, tmp_path, name, others):
     path = tmp_path / name
     for text in others:
         path.write_bytes(text)
-        status, out, err = command("-g", path, sample)
+        status, out, err = run("-g", path, sample)
         assert (status, out) == (2, "") and one_line(err) and "not a figure of this program" in err
         assert path.read_bytes() == text
     path.write_bytes(b"")
     for _ in range(2):                      # over nothing, and over itself
-        assert main(["-g", str(path), str(sample)]) == 0 and path.stat().st_size > 1000
-        assert capsys.readouterr().err == ""
+        status, _, err = run("-g", path, sample)
+        assert (status, err) == (0, "") and path.stat().st_size > 1000
 
 
-def test_a_figure_of_nothing(command, sample, tmp_path):
+def test_a_figure_of_nothing(run, sample, tmp_path):
     for name in "a.ps", "a.svg":
-        assert command("--time-limit", "0", "-g", tmp_path / name, sample)[0] == 1
+        assert run("--time-limit", "0", "-g", tmp_path / name, sample)[0] == 1
         assert (tmp_path / name).stat().st_size > 1000
 
 
-def test_nothing_that_a_terminal_obeys(command, sample, tmp_path):
+def test_nothing_that_a_terminal_obeys(run, sample, tmp_path):
     """In messages, whatever name or text they quote."""
     backup, evil = tmp_path / "b", tmp_path / "\x1b[31mx"
-    assert command("-b", backup, sample)[0] == 0
+    assert run("-b", backup, sample)[0] == 0
     forged = backup.read_text().replace("program: converse ", "program: converse \x1b[2J")
     assert "\x1b" in forged
     body = forged[:forged.index("checksum:")]
     evil.write_text(body + "checksum: sha256 %s\nend\n" % hashlib.sha256(body.encode()).hexdigest())
     for arguments, stdin in ((["-r", evil], b""), ([evil], b""), ([], b"1 0\n\x1b[31mx 0\n"),
                              (["-g", evil, "-b", evil, sample], b"")):
-        status, out, err = command(*arguments, stdin=stdin)
+        status, out, err = run(*arguments, stdin=stdin)
         assert status == 2 and one_line(err) and "\x1b" not in err + out
 
 
@@ -381,22 +385,22 @@ def test_nothing_that_a_terminal_obeys(command, sample, tmp_path):
     (["-d", "60"], "or deeper cuts (-d 120)"),
     (["--method", "loewner", "-d", "60000"], "or larger parameters"),
     ([], "not all 0, as the map without potential has invariant tori")])
-def test_advice_that_can_be_taken(command, sample, arguments, advice):
+def test_advice_that_can_be_taken(run, sample, arguments, advice):
     """(Of a square no leaf is linked, which is tried for minutes else.)"""
     stdin = sample.read_bytes() if arguments == ["-d", "3"] else \
         b"%s 0\n0 0\n0 0\n1 .5\n1 .5\n" % (b".001" if arguments else b"0")
-    status, out, err = command(*arguments, stdin=stdin)
+    status, out, err = run(*arguments, stdin=stdin)
     assert status == 1 and err == ""
     assert re.search(r"To try(?: : | +)(.*[^.\n])", out)[1].endswith(advice)
 
 
-def test_a_potential_of_ones_own(command, root, tmp_path):
+def test_a_potential_of_ones_own(run, root, tmp_path):
     """JSON by its name or its first brace; a circle is called one; its backup goes on alone."""
     sample, path = root / "inputs" / "standard.json", tmp_path / "a.proof"
-    status, out, err = command("--method", "loewner", "-d9", "-s", "-b", path,
+    status, out, err = run("--method", "loewner", "-d9", "-s", "-b", path,
                                stdin=sample.read_bytes())
     assert (status, err) == (1, "") and out.startswith("UNDECIDED: ")
-    status, out, err = command("-r", path, "-d", "120")
+    status, out, err = run("-r", path, "-d", "120")
     assert (status, err) == (0, "")
     assert "  with  V(y) = K cos y,\n  has no rotational invariant circle\n" \
         "  for every K in [0.976, 1.34]\n  and for every K > 1.34.\n" in out
@@ -404,37 +408,37 @@ def test_a_potential_of_ones_own(command, root, tmp_path):
 
 @pytest.mark.parametrize("arguments, words", [
     ([], "--method loewner"), (["--method", "loewner", "--together"], "name a parameter")])
-def test_a_potential_needs_the_sharper_method(command, root, arguments, words):
-    status, out, err = command(*arguments, root / "inputs" / "crossed.json")
+def test_a_potential_needs_the_sharper_method(run, root, arguments, words):
+    status, out, err = run(*arguments, root / "inputs" / "crossed.json")
     assert (status, out) == (2, "") and one_line(err) and words in err
 
 
-def test_an_input_that_moves_together(command, tmp_path):
+def test_an_input_that_moves_together(run, tmp_path):
     (tmp_path / "a.json").write_text('{"parameters": {"e": ["0.4", "0.5"]}, "harmonics": [%s]}' %
                                      ", ".join(
         '{"k": %s, "amplitude": {"e": 1}}' % k for k in ("[1, 0]", "[0, 1]", "[1, 1]")))
-    status, out, err = command(tmp_path / "a.json")
+    status, out, err = run(tmp_path / "a.json")
     assert (status, out) == (2, "") and one_line(err) and "--method loewner" in err
-    status, out, err = command("--method", "loewner", tmp_path / "a.json")
+    status, out, err = run("--method", "loewner", tmp_path / "a.json")
     assert (status, err) == (0, "") and "  for every e in [0.4, 0.5]" in out
     assert "V(y) = -e sin y0 - e sin y1 - e sin(y0 + y1),\n" in out
 
 
-def test_json_mistakes_are_one_line(command, tmp_path):
+def test_json_mistakes_are_one_line(run, tmp_path):
     (tmp_path / "a.json").write_text('{"harmonics": [{"k": [1, 0], "amplitude": '
                                      '"\\u001b]0;x\\n"}]}')
-    status, out, err = command("--method", "loewner", tmp_path / "a.json")
+    status, out, err = run("--method", "loewner", tmp_path / "a.json")
     assert (status, out) == (2, "") and one_line(err) and "\x1b" not in err
     assert "a.json: the amplitude of harmonic 1: " in err
 
 
-def test_a_point_is_chosen(command, sample, tmp_path):
-    status, out, err = command("-d5", "--xstar", "0.8", "-0.95", "-b", tmp_path / "a", sample)
+def test_a_point_is_chosen(run, sample, tmp_path):
+    status, out, err = run("-d5", "--xstar", "0.8", "-0.95", "-b", tmp_path / "a", sample)
     assert (status, err) == (1, "") and "\nx* : 0.8 -0.95\n" in out
     for words in ("0.8", "x"), ("1/3", "0"), ("1e999", "0"):
-        status, out, err = command("--xstar", *words, sample)
+        status, out, err = run("--xstar", *words, sample)
         assert (status, out) == (2, "") and one_line(err) and "--xstar" in err
-    status, out, err = command("--xstar", "0.8", "--jobs", "1", sample)
+    status, out, err = run("--xstar", "0.8", "--jobs", "1", sample)
     assert (status, out) == (2, "") and one_line(err)
 
 
