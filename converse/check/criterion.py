@@ -64,7 +64,7 @@ class Criterion:
         self.xstar = tuple([math.floor(x * self.fixed.one) for x in claim.xstar])
 
     def of_part(self, part):
-        """That of a part of the claim, which has another x* and another region."""
+        """The criterion for a part of the claim, which has another x* and another region."""
         other = copy.copy(self)
         other.take(part)
         return other

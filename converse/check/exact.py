@@ -103,8 +103,8 @@ class Lane:
             cube, fourth = (square * reach >> bits) + 1, (square * square >> bits) + 1
             bent = ((abs(cosine) * (12 * far + fourth) + 4 * abs(sine) * cube) // 24 >> bits) \
                 + 2 * error + len(xi) + len(pairs) + 2
-            # Of second order, of e[i] e[j]; its mean, by which X is moved; and with that of T,
-            # of e[i]^2 - 1/2 and e[i] e[j].
+            # The coefficients of e[i] e[j], of second order.  X is moved by their mean.  With
+            # those of T they are the coefficients of e[i]^2 - 1/2 and e[i] e[j].
             form = [cosine * xi[i] * xi[j] >> bits + (i == j) for i, j in pairs]
             moved = []
             for m, part in parts:
@@ -371,7 +371,7 @@ def cube_bound(form):
     what is linear in e, the largest value is.  x e^2 with x > 0 is x - x (1 - e^2), and e[i]^2
     e[k], k = i or not, is e[k] - (1 - e[i]^2) e[k]: with 1 - e[i]^2, which lies between 0 and 1,
     stands at most the sum of these |coefficients|, less x.  The rest is linear in each symbol, and
-    largest at a corner; at opposite corners what is odd has opposite signs.
+    largest at a corner; odd terms have opposite signs at opposite corners.
     """
     symbols = [key[0] for key in form if len(key) == 1]
     form = {key: x << 2 * TRY_BITS for key, x in form.items()}

@@ -151,8 +151,8 @@ class Field:
         raise NotConfirmed(LARGE)
 
     def truncated(self, element, places):
-        """The element to so many decimal places, rounded towards 0: both ends of an interval that
-        holds it agree on them, so that large coordinates, which cancel, do not make them false."""
+        """The element to `places` decimal places, rounded towards 0.  Both ends of an interval that
+        contains it agree on these places, so they are right even if large coordinates cancel."""
         for bits in (BITS, 512, 2048, 8192):
             low, high = [math.trunc(x * 10 ** places) for x in self.interval(element, bits)]
             if low == high:

@@ -258,7 +258,7 @@ def summit(form):
     is linear in e, the largest value is.  x e^2 with x > 0 is x - x (1 - e^2), and e[i]^2 e[k],
     k = i or not, is e[k] - (1 - e[i]^2) e[k]: with 1 - e[i]^2, which lies between 0 and 1, stands
     at most the sum of these |coefficients|, less x.  The rest is linear in each symbol, and largest
-    at a corner; at opposite corners what is odd has opposite signs.
+    at a corner; odd terms have opposite signs at opposite corners.
     """
     symbols = [key[0] for key in form if len(key) == 1]
     linear, twist, constant = [form[i,] for i in symbols], [0] * len(symbols), 0

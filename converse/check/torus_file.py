@@ -120,7 +120,7 @@ def torus_header(head):
 
 
 def rationals(text, count, name):
-    """So many numbers, separated by single spaces."""
+    """Reads `count` numbers that single spaces separate."""
     words = text.split(" ", count)
     if len(words) != count:
         raise Rejected("%s is not %d numbers" % (name, count))

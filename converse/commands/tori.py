@@ -84,8 +84,8 @@ def _prove_parser(commands):
 # ---- the command
 
 class _Steps(ProgressLine):
-    """Tells each step when it begins, since one step can take minutes: on a terminal in its line,
-    elsewhere on a line of its own."""
+    """Prints each step when it begins, since one step can take minutes: on a terminal in place of
+    the last step, elsewhere on a new line."""
 
     def __call__(self, step):
         self.due = 0.0

@@ -225,9 +225,9 @@ class _Way:
         return high[2] > 0 and high[1] >= low[1] - self.noise
 
     def between(self, low, high):
-        """The pass between two stops where the action ceases to rise, or None, and its action above
-        the first state's, or how far that rises at least.  If the state jumps there, another
-        coordinate leads from one side to the other."""
+        """Finds the pass between two stops, where the action ceases to rise.  Returns the pass and
+        its action above the first state's; or None and a lower bound of that rise.  If the state
+        jumps there, another coordinate leads from one side to the other."""
         for _ in range(PASS_BISECTIONS):
             middle = self.at((self.t_of(low[0]) + self.t_of(high[0])) / 2, low[0])
             found, _ = newton(middle[0], max_steps=MAX_POLISH_STEPS)

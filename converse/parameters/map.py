@@ -113,7 +113,7 @@ class ParameterMap(Kept):
 
     @classmethod
     def new(cls, region: str, down_to: Fraction) -> "ParameterMap":
-        """A map of which nothing is proved or estimated yet.
+        """Makes a map in which nothing is proved or estimated yet.
 
         Parameters
         ----------

@@ -131,8 +131,8 @@ class Counts:
         return Counts(**both)
 
 
-# The most points of an orbit, where longer ones are of no use: the standard map needs 3,798 for
-# k = 0.972.  orbit_length.py tells where they are of use.
+# The most points of an orbit, except where longer orbits may prove more (orbit_length.py).  The
+# standard map needs 3,798 points for k = 0.972.
 ORDINARY = 4000
 
 

@@ -1,4 +1,4 @@
-"""Further starting points: which, where one leaves prisms undecided.
+"""Chooses further starting points, where one leaves prisms undecided.
 
 Orbits that minimize leave gaps, and x* must lie in one; but those of different rotation vectors
 leave different gaps.  So one x* may contradict all but a few clusters of prisms, and for each of
@@ -120,8 +120,8 @@ def _shrinks(problem, xstar, survey):
 
 
 def _whole(problem, xstar, cuts, survey, points):
-    """The tree of so many cuts; None if it has more than MAX_LOOK_LEAVES leaves or `points` points
-    of orbits, or if time was up."""
+    """The tree down to `cuts` cuts; None if it has more than MAX_LOOK_LEAVES leaves or `points`
+    points of orbits, or if time was up."""
     grown = survey([native.Task(problem, Settings("loewner", cuts, stubborn=True), xstar)],
                    MAX_LOOK_LEAVES, points)
     return grown[0] if grown and not grown[0].cells else None

@@ -245,8 +245,8 @@ def _extrapolated(known: List[Found], part: float) -> np.ndarray:
 
 def newton(mesh: Mesh, u: np.ndarray, amplitude: np.ndarray,
            keep: np.ndarray) -> Optional[Tuple[np.ndarray, float]]:
-    """The coefficients of the modes `keep` that solve the equation, as exactly as the noise and the
-    other modes permit, and what is left of the error; None: the method does not converge from u."""
+    """Solves the equation for the coefficients of the modes `keep`, as exactly as the noise and the
+    other modes permit.  Returns them and the remaining error, or None if it does not converge."""
     noise = mesh.noise(amplitude)
     before = inf
     for _ in range(ITERATIONS):

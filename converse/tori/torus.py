@@ -60,7 +60,7 @@ def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
 
 
 class Strip(NamedTuple):
-    """In what norm the theorem is to be verified: a choice of the proof, no part of the claim.
+    """The norm in which the theorem is verified.  It is a choice of the proof, not of the claim.
 
     Attributes
     ----------

@@ -52,7 +52,7 @@ INLINE void evaluate(const orbits *o, const vec x[2], vec force[2], vec beta[3])
     }
 }
 
-/* The score for so many points on either side, given their beta.  More points lower it. */
+/* The score for `points` points on either side, given their beta.  More points lower it. */
 INLINE double score_of(const orbits *o, int points, vec beta[SIDES][FAR_REACH][3])
 {
     vec form[3] = { every(o->beta[0]), every(o->beta[1]), every(o->beta[2]) }, least;

@@ -15,7 +15,7 @@ enum { NEAR_REACH = 4, FAR_REACH = 6 };
 typedef struct {
     const waves *v;
     int flat;                           /* Does no wave depend on the second angle? */
-    int reach, step;                    /* Orbits have so many points on either side of x*. */
+    int reach, step;                    /* reach: points of an orbit on each side of x* */
     double scale, l;                    /* l: see least_slope in converse/prover/links.py */
     double xstar[2], middle[2], beta[3];
     double guess[GUESSES][2];           /* offsets whose orbits left most, the latest first */

@@ -19,9 +19,9 @@ static const double ROUNDING = 1e-15; /* The rounding of a sum, as a part of the
 static const double MIN_ESCAPE = 1e-7; /* Shorter steps off a saddle change the action by less
                                           than its rounding. */
 static const double HELD_ENTRY = 1e100; /* A held coordinate has this diagonal entry. */
-enum { MAX_ESCAPES = 50 }; /* At most so many saddles are left. */
+enum { MAX_ESCAPES = 50 }; /* The most saddles that one search leaves. */
 enum { WALKING_STEPS = 1000 }; /* Later steps have to lower the action or the gradient. */
-enum { POINTS_PER_POLL = 1 << 18 }; /* After so many points Python is asked about Ctrl-C. */
+enum { POINTS_PER_POLL = 1 << 18 }; /* The points between two questions to Python about Ctrl-C. */
 
 typedef double point[2];
 typedef double block[3];
