@@ -37,7 +37,7 @@ class Wave:
 
 
 def present(waves):
-    """Those whose amplitude is not always zero."""
+    """The waves whose amplitude is not always zero."""
     return tuple(wave for wave in waves if wave.middle or any(wave.parts))
 
 
@@ -72,7 +72,7 @@ class Claim:
         return (h0, none), (none, h1), *self.shifts, *[(none, none)] * (3 - len(self.shifts))
 
     def box(self, cell):
-        """Of v0 and v1: the middle of a cell, and how they change from there along its axes."""
+        """For v0 and v1 each: the middle of a cell, and the change from there along its axes."""
         at = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(*cell)]
         return [(c + sum([x * y for x, y in zip(at, along)]),
                  [y / (1 << k) for y, k in zip(along, cell[1])])

@@ -29,7 +29,7 @@ class Unusable(Failure):
 
 @contextlib.contextmanager
 def named(name):
-    """What fails within is told by this name, if there is one."""
+    """A context in which messages about failures begin with this name, if there is one."""
     try:
         yield
     except Failure as error:

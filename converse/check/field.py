@@ -65,8 +65,8 @@ def evaluate(polynomial, x):
 
 
 def is_irreducible(polynomial):
-    """Of degree 2 or 3: is there a prime modulo which it keeps its degree and has no root?
-    Then it is irreducible.  (If it is, there are such primes: a third of all, or more.)"""
+    """Is there a prime modulo which the polynomial, of degree 2 or 3, keeps its degree and has no
+    root?  Then it is irreducible.  (An irreducible one has such primes: a third, or more.)"""
     return any(polynomial[-1] % p and all(evaluate(polynomial, x) % p for x in range(p))
                for p in PRIMES)
 
@@ -160,7 +160,7 @@ class Field:
         raise NotConfirmed(LARGE)
 
     def product(self, x, y):
-        """Of two elements."""
+        """The product of two elements."""
         found = [Fraction(0)] * (2 * self.degree - 1)
         for (i, a), (j, b) in itertools.product(enumerate(x), enumerate(y)):
             found[i + j] += a * b
@@ -193,12 +193,12 @@ def identity(n):
 
 
 def determinant(rows):
-    """Of a matrix of one or two rows."""
+    """The determinant of a matrix of one or two rows."""
     return rows[0][0] if len(rows) == 1 else rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
 
 
 def inverse_matrix(rows):
-    """Of such a matrix of rationals."""
+    """The inverse of such a matrix of rationals."""
     if len(rows) == 1:
         return [[1 / Fraction(rows[0][0])]]
     (a, b), (c, d) = rows
@@ -262,11 +262,11 @@ class Norm:
         return [sum([w * abs(p + q * a) for w, p, q in terms]) for a in range(low, top + 1)]
 
     def coordinates(self, k, basis=None):
-        """Of k in the lattice's basis: rationals, integers on the lattice."""
+        """The coordinates of k in the lattice's basis: rationals, integers on the lattice."""
         return combination(k, inverse_matrix(basis or self.basis))
 
     def place(self, k):
-        """Those of k in its own basis; None, if it is not in the lattice."""
+        """The coordinates of k in the lattice's own basis; None: k is not in the lattice."""
         if self.dimension == 1:
             (p,), d = k, self.basis[0][0]
             return (p // d,) if not p % d else None
@@ -412,7 +412,7 @@ class Divisors:
 
     @property
     def front(self):
-        """Of the records those that are worse than the tail's bound."""
+        """The records that are worse than the tail's bound."""
         return [(length, bound) for length, bound in self.records
                 if bound * length ** self.power < self.tail]
 

@@ -42,7 +42,7 @@ class Portrait:
 
     @property
     def length(self):
-        """Of the interval in which x* lies, in radians, from below and from above."""
+        """Bounds of the length, in radians, of the interval in which x* lies: below and above."""
         fixed = fixed_of(CENTRE_BITS)
         turns = 1 if self.even is not None else 2
         return [turns * Fraction(fixed.pi + off, fixed.one) for off in (-2, 2)]

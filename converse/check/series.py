@@ -26,7 +26,7 @@ EXACT = decimal.Context(prec=decimal.MAX_PREC, Emax=decimal.MAX_EMAX, Emin=decim
 
 
 def greatest(numbers):
-    """Of the absolute values."""
+    """The largest absolute value."""
     return max(max(numbers), -min(numbers)) if numbers else 0
 
 
@@ -121,8 +121,9 @@ class Box:
 
 @dataclass(frozen=True)
 class Series:
-    """Of rows times columns entries, each (real parts, imaginary parts or None), lists in the order
-    of the box, in units of 2^-bits of its ring; the radius in units of 2^-(bits + FINE)."""
+    """A matrix of series.  Each of its entries is (real parts, imaginary parts or None), lists in
+    the order of the box, in units of 2^-bits of its ring.  The radius is in units of
+    2^-(bits + FINE)."""
 
     rows: int
     columns: int

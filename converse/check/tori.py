@@ -670,7 +670,7 @@ def refuse_too_many(torus, limit, most):
 
 
 def bounds_of_waves(torus, sigma, rho, powers):
-    """Of each wave (|p|, |k|, an upper bound of ||e^(i k.x)||)."""
+    """(|p|, |k|, an upper bound of ||e^(i k.x)||) for each wave."""
     found = []
     for k, _, middle, part in torus.waves:
         length = upper_root(sum([x * x for x in k]))
@@ -734,7 +734,7 @@ def ring_for(torus, sigma, far, needed, spare):
 
 
 def constants_of_cut(found, whole, powers):
-    """Those of the torus that was cut and rounded for the residual, from those of the whole."""
+    """The constants of the torus that was cut for the residual, from those of the whole torus."""
     ring, norm = found.ring, found.torus.norm
     beyond = found.torus.derivative_outside(powers, found.near) \
         + Fraction(ring.rounding(found.u), 1 << ring.bits + FINE) * rounded_up(
@@ -819,7 +819,7 @@ def exact_text(x):
 
 
 def sum_text(coefficients, names):
-    """Of coefficients times names, without those that are zero."""
+    """The text of a sum of coefficients times names, without terms that are zero."""
     text = ""
     for x, name in zip(coefficients, names):
         if x:

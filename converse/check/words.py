@@ -109,7 +109,7 @@ def claimed(claim):
 
 
 def not_excluded(claim, ordinal, cell, why):
-    """That a leaf is not confirmed, and why."""
+    """The message that a leaf is not confirmed, with the reason."""
     return "%s is not excluded: %s; the claim is false or its proof beyond the limits of this " \
         "checker" % (leaf_text(claim, "P", ordinal, cell), why)
 

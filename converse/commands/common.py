@@ -41,7 +41,7 @@ class Parser(argparse.ArgumentParser):
         raise ConverseError("%s; see %s --help" % (message, self.prog))
 
     def _print_message(self, message, file=None):
-        """As argparse does, which ignores errors of writing."""
+        """Writes as argparse does, except that errors of writing are not ignored."""
         (file or sys.stderr).write(message)
 
 

@@ -92,8 +92,8 @@ def circle(torus, problem):
 
 
 def shares(portrait):
-    """Of each column, from the left, and of ROWS intervals of x_1 - x_0 from -pi to pi, the share
-    that is undecided: an array; and where the columns begin and end."""
+    """The share that is undecided of each column, from the left, and of each of ROWS intervals of
+    x_1 - x_0 from -pi to pi: an array; and where the columns begin and end."""
     stars = portrait.stars
     half = math.pi / len(stars) * portrait.turns / 2
     image = np.ones((ROWS, len(stars) * 2 // portrait.turns))

@@ -28,8 +28,8 @@ Point = Tuple[str, str]
 
 
 def symmetries_used(problem: Problem, xstar: Optional[Point]) -> Optional[List[str]]:
-    """By which symmetries the region stands for the whole torus; None: it does not, or has shifts.
-    """
+    """The symmetries by which the region stands for the whole torus, or None if it does not, or
+    has shifts."""
     if problem.shifts:
         return None
     period0, period1 = periods(problem.frame)

@@ -104,8 +104,8 @@ def parameters(problem):
 
 
 def conditions(problem, at_once=False):
-    """For which parameters the theorem holds, in lines; at_once: multiples of these are covered,
-    too (Proof.at_once)."""
+    """The lines that name the parameters for which the theorem holds.  With at_once they name
+    larger multiples also (Proof.at_once)."""
     names = parameters(problem)
     if names is None:
         ends = [whole("(%s)" % ", ".join(map(number_text, corner))) for corner in zip(*problem.abc)]

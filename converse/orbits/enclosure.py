@@ -49,7 +49,7 @@ def _fraction(x):
 # ---- small matrices; symmetric ones are so to the last bit
 
 def inverse(x):
-    """Of a symmetric matrix; None, unless it is certainly positive definite."""
+    """The inverse of a symmetric matrix; None, unless it is certainly positive definite."""
     if x.nrows() == 1:
         a = x[0, 0]
         return arb_mat(1, 1, [1 / a]) if a > 0 else None

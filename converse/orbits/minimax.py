@@ -76,7 +76,7 @@ class Pair:
 
     @property
     def flux(self) -> float:
-        """Of one angle: the area that each iterate of the map carries through the gap, in either
+        """With one angle, the area that each iterate of the map carries through the gap, in either
         direction, if the gap holds no other orbits of the type.  It is the barrier, an area in the
         units of the map: the torus has the area period^2.  ValueError for
         n = 2."""

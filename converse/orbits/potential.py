@@ -55,7 +55,7 @@ def told(progress):
 
 
 def finite(what, values):
-    """As a list of floats, of one number or several; ValueError, unless they are finite."""
+    """Returns one number or several as a list of floats.  ValueError: they are not all finite."""
     try:
         floats = [float(x) for x in ([values] if isinstance(values, (str, Number)) else values)]
         if all(map(math.isfinite, floats)):
@@ -66,7 +66,7 @@ def finite(what, values):
 
 
 def whole(what, value, least, most=2 ** 31 - 1):
-    """As an int; ValueError, unless it is a whole number in this range."""
+    """Returns the value as an int.  ValueError: it is not a whole number in this range."""
     try:
         if int(value) == value and least <= value <= most:
             return int(value)

@@ -229,8 +229,8 @@ class _Pass:
                           exact.n == 1 and self.between(displacements, radius))
 
     def residue(self, m, away, size, inside, shown):
-        """Of every orbit whose blocks are within `away` of these: -det P (1 - sigma e.P^-1 e)/4,
-        where det P is l + 1/l - 2 of the chain of P."""
+        """Encloses the residue, -det P (1 - sigma e.P^-1 e)/4, of every orbit whose blocks are
+        within `away` of these.  Here det P is l + 1/l - 2 of the chain of P."""
         ((low, high),), _ = grown(self.exact, growth, m, away)
         away += Fraction(1, 10 ** self.places)
         det = 2 * (ball(low).union(ball(high))).cosh() - 2

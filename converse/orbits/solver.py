@@ -172,7 +172,7 @@ def row(state):
 
 
 def reached(potential, eps, begin=0.0):
-    """As a list of floats; ValueError, unless they are finite numbers that follow comes to."""
+    """Returns eps as a list of floats.  ValueError: not all are numbers that follow reaches."""
     eps, step = finite("eps", eps), step_of(potential)
     for a, b in zip([begin] + eps, eps):
         if not abs(b - a) <= MAX_EPS_STEPS * step:

@@ -64,7 +64,7 @@ def type_of(potential, p, q):
 
 
 def vector_words(p, q):
-    """As the thesis writes it, (1432, 1897)/2513; of one angle 8/21."""
+    """The type as the thesis writes it, (1432, 1897)/2513; of one angle 8/21."""
     return ("(%s)/%d" if len(p) > 1 else "%s/%d") % (", ".join(map(str, p)), q)
 
 

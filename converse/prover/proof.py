@@ -159,8 +159,8 @@ class Proof(Kept):
 
     @cached_property
     def symmetries_used(self) -> Optional[List[str]]:
-        """By which symmetries, in words, the region stands for every possible successor; None: it
-        is a part of the torus only."""
+        """The symmetries, in words, by which the region stands for every possible successor, or
+        None if it is a part of the torus only."""
         return symmetries_used(self.problem, self.xstar)
 
     @property
@@ -181,7 +181,7 @@ class Proof(Kept):
 
     @property
     def arithmetic(self) -> str:
-        """What the bounds were computed in, in words."""
+        """The arithmetic in which the bounds were computed, in words."""
         return "%d decimal places" % self.digits if self.method == "thesis" else "double precision"
 
     @property

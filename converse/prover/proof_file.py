@@ -38,8 +38,8 @@ def load(path):
 
 
 def _trees(lines):
-    """Of the lines from the first `tree:` on: for each tree the fields of its part, none of the
-    first's, and its text."""
+    """Reads the lines that begin with the first `tree:`.  Returns for each tree the fields of its
+    part (the first has none) and its text."""
     trees = [({}, [])]
     for line in lines:
         key, colon, value = line.partition(": ")

@@ -53,8 +53,8 @@ def _hardest(problem, text):
 
 
 def _ends(waves, frame, star, v):
-    """Of both ends of the orbit through star and the successor: how it moves with v0, v1 and the
-    parameters, as two rows, of its coordinates."""
+    """How both ends of the orbit through star and the successor move with v0, v1 and the
+    parameters: for each end two rows, of its coordinates."""
     f00, f01, f10, f11 = frame
     n = len(waves[0]) - 4
     next_ = [math.pi * (f00 * v[0] + f01 * v[1]), math.pi * (f10 * v[0] + f11 * v[1])]

@@ -48,7 +48,7 @@ class Field(field.Field):
 
 
 def determinant(matrix: Sequence[Sequence]) -> Fraction:
-    """Of a square matrix, by expansion along its first row."""
+    """The determinant of a square matrix, by expansion along its first row."""
     if len(matrix) == 1:
         return matrix[0][0]
     return sum(((-1) ** j * x * determinant([[*row[:j], *row[j + 1:]] for row in matrix[1:]])

@@ -99,7 +99,7 @@ def _range_text(piece):
 
 
 def _amplitudes(potential, rotation, start):
-    """Of each wave of the start."""
+    """The amplitude of each wave of the start."""
     known = dict(zip(start.potential.waves, _doubles(start.potential.amplitude)))
     for wrong, has in ((start.rotation.floats != rotation.floats, "another rotation vector"),
                        (start.part is not None, "a parameter; take a torus of one map"),

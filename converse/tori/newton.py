@@ -250,7 +250,7 @@ class Mesh:
         return self._rounding() * force
 
     def _rounding(self):
-        """Of coefficients, in terms of values."""
+        """The rounding error of coefficients, in terms of the values."""
         return 4 * EPSILON * (log2(self.points) / self.points) ** 0.5
 
     def _clean(self, values):

@@ -73,8 +73,8 @@ class Plan(NamedTuple):
             & (abs(mesh.k).max(0) > 0)
 
     def bits(self, k: np.ndarray, degree: int, margin: float) -> int:
-        """Of the coefficients of modes k, for each power of sigma: what is cut off them makes up
-        less than needed/margin/16 of ||E||_rho."""
+        """The bits of the coefficients of modes k, for each power of sigma.  Cutting them to these
+        bits changes ||E||_rho by less than needed/margin/16."""
         weights = (degree + 1) * np.exp(np.minimum(self.rho * self.length(k), 600))
         return ceil(log2(margin / self.needed) + log2(max(float(weights.sum()), 1)) + 8)
 

@@ -39,7 +39,7 @@ def errors(mesh: Mesh, torus: Torus, layers: int, wanted: np.ndarray, bits: int
 
 
 class _Task:
-    """What is the same for all sigma."""
+    """The data that are the same for all sigma."""
 
     def __init__(self, mesh: Mesh, torus: Torus, wanted: np.ndarray, bits: int) -> None:
         self.mesh, self.torus, self.wanted = mesh, torus, wanted

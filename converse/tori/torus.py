@@ -123,12 +123,12 @@ class Torus:
 
     @property
     def degree(self) -> int:
-        """Of the coefficients as polynomials in sigma."""
+        """The degree of the coefficients as polynomials in sigma."""
         return self.numbers.shape[1] - 1
 
     @cached_property
     def amplitudes(self) -> Tuple[Tuple[Fraction, Fraction], ...]:
-        """Of each wave (c, d): its amplitude on the piece is c + d sigma."""
+        """A pair (c, d) for each wave: its amplitude on the piece is c + d sigma."""
         low, high = self.piece
         part = self.part or (Fraction(0),) * len(self.potential.amplitude)
         return tuple((p + (low + high) / 2 * d, (high - low) / 2 * d)
