@@ -277,8 +277,8 @@ class _Run:
         with WorkerPool(self.executor) as workers, \
                 WorkerPool(None, self.jobs, native.Stop()) as pool:
             found = plan(problem, self.proof.depth, self._tree.xstar, undecided,
-                         Fraction(self.proof.constants["B"]), len(self.proof.parts), pool,
-                         seconds_left)
+                         Fraction(self.proof.constants["B"]), len(self.proof.parts),
+                         self._longest(), pool, seconds_left)
         if found is None:
             return False
         proof = self.proof.with_tree(self.number, text=found.tree, pending=())

@@ -51,12 +51,13 @@ class Plan:
     parts: List[Tree]
 
 
-def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
+def plan(problem, depth, xstar, undecided, largest, before, longest, pool, seconds_left):
     """A Plan for a region over xstar; None: none was found, or seconds_left() fell to 0 before.
     Prisms without a better point become untried.
 
     undecided: whether the tree over x* alone is known to be undecided; before: the number of
-    further parts so far; largest: B; pool: of this process."""
+    further parts so far; largest: B; longest: the most points of an orbit in a tree that is tried
+    to the end; pool: of this process."""
     survey = partial(_surveys, pool, seconds_left)
     grown, found = _look(problem, depth, xstar, survey)
     if not found or before + len(found) > MAX_PARTS:
@@ -64,7 +65,7 @@ def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
     targets, parts = [], []
     points = [] if undecided else [tuple(Fraction(x) for x in xstar)]   # x* itself may do
     for cells in found:
-        image = _Image(problem, depth, xstar, largest, cells, survey)
+        image = _Image(problem, depth, xstar, largest, cells, longest, survey)
         best = _best_start(image, points)
         shifts = () if best is None else image.shifts(best)
         if seconds_left() <= 0:
@@ -144,13 +145,13 @@ class _Image:
     """The image of a box over other starting points, where the waves bend least: there most prisms
     resist, and cuts of parameters do not hide how many."""
 
-    def __init__(self, problem, depth, xstar, largest, cells, survey):
+    def __init__(self, problem, depth, xstar, largest, cells, longest, survey):
         """cells: whose hull is the box, those that there are for the weakest waves."""
         signs, self.weakest = _weakest(problem)
         cells = [cell for cell in cells if _reaches(cell, signs)] or cells
         self.problem, self.depth, self.xstar = problem, depth, xstar
         self.largest, self.box = min(largest, *crests(self.weakest)), hull_of(problem, cells)
-        self.survey = survey
+        self.longest, self.survey = longest, survey
 
     def part(self, point):
         """The problem over the point: in half of the region, if the mirror image of the half is the
@@ -162,16 +163,16 @@ class _Image:
         """Is the region over this point halved?"""
         return folds(self.part(point), _text(point))
 
-    def grow(self, points, settings, most):
+    def grow(self, points, settings, most, longest=native.ORDINARY):
         """The trees over the points, of `most` leaves each; [] if time was up."""
         parts = [self.part(point) for point in points]
         return self.survey([
-            native.Task(self.weakest.part((part.v0, part.v1)), settings, _text(point))
+            native.Task(self.weakest.part((part.v0, part.v1)), settings, _text(point), longest)
             for part, point in zip(parts, points)], most)
 
     def proof(self, point):
         """A tree over the point, tried to the end; None if time was up."""
-        grown = self.grow([point], Settings("loewner", self.depth), MAX_PROOF_LEAVES)
+        grown = self.grow([point], Settings("loewner", self.depth), MAX_PROOF_LEAVES, self.longest)
         return grown[0] if grown else None
 
     def shifts(self, point):

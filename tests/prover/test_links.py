@@ -391,6 +391,20 @@ def test_mirror_images_are_not_linked(easily, monkeypatch, a, low, high):
     assert proof.verify().verdict
 
 
+def test_orbits_over_another_point_are_as_long_as_over_the_first(easily, monkeypatch):
+    """Where a tree is tried to the end, but not where starting points are compared."""
+    lengths, survey = set(), native.survey
+
+    def noted(task, *rest):
+        lengths.add((task.settings.stubborn, task.longest))
+        return survey(task, *rest)
+
+    monkeypatch.setattr(native, "survey", noted)
+    monkeypatch.setattr(starts, "MAX_PROOF_LEAVES", 100)
+    proof = prove(Problem(MuldoonMap(("0.98", "0.981"), 0, 0)), method="loewner")
+    assert proof.no_tori and proof.parts and lengths == {(True, native.ORDINARY), (False, 0)}
+
+
 def test_undecided_stays_undecided(easily):
     """Where there are tori, links prove nothing."""
     proof = prove(line("0.004"), method="loewner", depth=14)
