@@ -100,10 +100,10 @@ def test_one_proof_has_one_number_of_prisms():
 def test_the_links_of_the_standard_map():
     """Of the range whose prisms test_numbers.py compares with its golden output."""
     proved, linked = re.search(r"Search +([0-9,]+) prisms proved, ([0-9,]+) linked",
-                               golden("loewner/standard-972-up")).groups()
+                               golden("loewner/standard-9719-up")).groups()
     assert re.search("It proves %s prisms in [0-9]+ CPU seconds, and links %s more" % (
         proved, linked), words("method.md"))
-    row, = [row[4] for row in rows("inputs.md", "file") if row[0] == "`standard-972-up.in`"]
+    row, = [row[4] for row in rows("inputs.md", "file") if row[0] == "`standard-9719-up.in`"]
     assert row.startswith(proved)
 
 
