@@ -297,6 +297,21 @@ def test_margins():
     assert all(x > mp(1) / 300 for x in worst.values()), worst
 
 
+def test_the_rounding_of_xstar_along_the_axes():
+    """It is bounded along the axes of the remainders, to which both coordinates of x* add."""
+    rng, most = rng_for("x* along the axes"), 0
+    for k in [(100, -99), (7, 100), (5, -7), (1, 0)] * 5:
+        patch = draw(rng, [k])
+        if straightened(patch):
+            continue
+        first = sites(patch, 0, 1)[0]
+        off = [modulo(mp(x) - near) for x, near in zip(patch.xstar, first.x)]
+        for (i, j), bound in zip(axes_of(patch), first.rem):
+            assert abs(i * off[0] + j * off[1]) <= bound, k
+            most = max(most, abs(i * off[0] + j * off[1]) / bound)
+    assert most > 0.1
+
+
 # ---- regions that move with the parameters
 
 def test_roundings_of_large_shifts_widen_the_sides():
