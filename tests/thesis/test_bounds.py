@@ -122,6 +122,14 @@ def test_bounds_over_the_torus_for_random_parameters():
         assert e - 1e-9 <= B <= e + 1e-6
 
 
+def test_the_cells_cover_the_torus(root):
+    """The double that stands for pi is not less."""
+    text = (root / "csrc/model/torus.c").read_text("utf-8")
+    end = float.fromhex(text.partition("double PI = ")[2].partition(";")[0])
+    with mpmath.workdps(DIGITS):
+        assert mpmath.pi < end < mpmath.pi + mp(Fraction(1, 2 ** 51))
+
+
 def torus_values(p, v):
     """Trace and largest eigenvalue of 2I + W, that is of beta at -v, as exact numbers."""
     with mpmath.workdps(DIGITS):
