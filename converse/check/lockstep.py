@@ -318,8 +318,7 @@ def next_rest(d, f, r, r0, err, along, beside):
     M = d[::-1] * inv
     np.negative(M[1], out=M[1])
     m, inv, sizes = np.abs(M), np.abs(inv), np.abs(d)
-    f = applied(m, f) + err \
-        + (along + 2 * UNIT * m[::2]) * r + (beside + 2 * UNIT * m[1]) * r[::-1] \
+    f = applied(m, f) + err + along * r + beside * r[::-1] \
         + 8 * UNIT * inv * ((np.abs(diagonal) + square) * r0
                             + sizes[1] * (sizes[0] + sizes[2]) * r0[::-1])
     return f, M, det
