@@ -17,7 +17,6 @@ from .torus import least
 
 VECTOR_BITS = 28                        # of the vectors; the multipliers have twice as many
 UNIT_BITS = 56                          # of the second variation
-TRY_BITS = 10                           # of the points t where cube_bound draws its lines
 
 # A wave of a prism: k and the phase; amplitude and parts, as pairs (symbol, part); what p' cos y
 # and p' sin y are off by at most, computed as these numbers times cosines and sines.
@@ -360,44 +359,8 @@ class SecondVariation:
         form = self.form()
         value, error = 6 * self.value << 2 * UNIT_BITS, (self.error << 2 * UNIT_BITS) // 20 + 1
         moved = [sum([abs(x) for key, x in form.items() if k in key]) for k in self.symbols]
-        return value + cube_bound(form) + error, value, moved, error
-
-
-def cube_bound(form):
-    """An upper bound over the cube [-1, 1]^m of the polynomial with these integer coefficients: of
-    e[i], e[i] e[j] and e[i] e[j] e[k] by (i,), (i, j) and (i, j, k), i <= j <= k, no constant.
-
-    x e^2 with x < 0 is at most x (2 t e - t^2) for any t, here for about the one where, of it and
-    what is linear in e, the largest value is.  x e^2 with x > 0 is x - x (1 - e^2), and e[i]^2
-    e[k], k = i or not, is e[k] - (1 - e[i]^2) e[k]: with 1 - e[i]^2, which lies between 0 and 1,
-    stands at most the sum of these |coefficients|, less x.  The rest is linear in each symbol, and
-    largest at a corner; odd terms have opposite signs at opposite corners.
-    """
-    symbols = [key[0] for key in form if len(key) == 1]
-    form = {key: x << 2 * TRY_BITS for key, x in form.items()}
-    linear, twist, constant = [form[i,] for i in symbols], [0] * len(symbols), 0
-    for key, x in form.items():
-        if len(key) == 3 and len(set(key)) < 3:
-            i, k = key[1], key[0] if key[1] == key[2] else key[2]       # e[i]^2 e[k]
-            linear[k] += x
-            twist[i] += abs(x)
-    for i in symbols:
-        up, down = max(form[i, i], 0), max(-form[i, i], 0)
-        if down:
-            t = min(max((linear[i] << TRY_BITS) // (2 * down), -1 << TRY_BITS), 1 << TRY_BITS)
-            linear[i] -= 2 * down * t >> TRY_BITS       # exact
-            constant += down * t * t >> 2 * TRY_BITS    # exact
-        constant += up + max(twist[i] - up, 0)
-    odd = [((i,), linear[i]) for i in symbols]
-    odd += [(key, form[key]) for key in itertools.combinations(symbols, 3)]
-    even = [(key, form[key]) for key in itertools.combinations(symbols, 2)]
-    highest = []
-    for signs in itertools.product((1, -1), repeat=len(symbols) - 1):
-        signs = 1, *signs
-        at_odd, at_even = [sum([x * math.prod([signs[i] for i in key]) for key, x in part])
-                           for part in (odd, even)]
-        highest.append(abs(at_odd) + at_even)
-    return -(-max(highest) - constant >> 2 * TRY_BITS)
+        most = sum(map(abs, form.values()))     # of the polynomial over the cube
+        return value + most + error, value, moved, error
 
 
 def attempt(prism, l, penalties):

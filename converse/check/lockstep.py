@@ -250,41 +250,6 @@ def remainder(P, H, W, A0, alpha, B0, beta, weight, size, rest, reach):
         + H * (a * far + alpha * second + b * third + beta * (rest + third)) + W * weight
 
 
-def summit(form):
-    """An upper bound over the cube [-1, 1]^m of the polynomial with these coefficients: of e[i], of
-    e[i] e[j] and of e[i] e[j] e[k] by (i,), (i, j) and (i, j, k), i <= j <= k, without a constant.
-
-    x e^2 with x < 0 is at most x (2 t e - t^2) for any t, here for the one where, of it and what
-    is linear in e, the largest value is.  x e^2 with x > 0 is x - x (1 - e^2), and e[i]^2 e[k],
-    k = i or not, is e[k] - (1 - e[i]^2) e[k]: with 1 - e[i]^2, which lies between 0 and 1, stands
-    at most the sum of these |coefficients|, less x.  The rest is linear in each symbol, and largest
-    at a corner; odd terms have opposite signs at opposite corners.
-    """
-    symbols = [key[0] for key in form if len(key) == 1]
-    linear, twist, constant = [form[i,] for i in symbols], [0] * len(symbols), 0
-    for key, x in form.items():
-        if len(key) == 3 and len(set(key)) < 3:
-            i, k = key[1], key[0] if key[1] == key[2] else key[2]       # e[i]^2 e[k]
-            linear[k] = linear[k] + x
-            twist[i] = twist[i] + np.abs(x)
-    for i in symbols:
-        up, down = np.maximum(form[i, i], 0), np.maximum(-form[i, i], 0)
-        t = np.clip(linear[i] / (2 * down + UNDERFLOW_MARGIN), -1, 1)
-        linear[i] = linear[i] - 2 * down * t
-        constant = constant + up + down * t * t + np.maximum(twist[i] - up, 0)
-    corners = [(1, *signs) for signs in itertools.product((1, -1), repeat=len(symbols) - 1)]
-
-    def at_corners(keys, values):
-        signs = np.array([[math.prod([corner[k] for k in key]) for key in keys]
-                          for corner in corners], float)
-        return (signs[:, :, None] * np.stack(values)).sum(axis=1)
-
-    even, odd = [list(itertools.combinations(symbols, count)) for count in (2, 3)]
-    odd = at_corners([(i,) for i in symbols] + odd, linear + [form[key] for key in odd])
-    even = at_corners(even, [form[key] for key in even])
-    return (np.abs(odd) + even).max(axis=0) + constant
-
-
 class Sites(collections.namedtuple("Sites", "alive s c columns rest E")):
     """A site of all lanes, in the words of docs/proofs/checker.md: the lanes that have it; s, c,
     k.L as columns of the symbols and the rest of each wave; E of step (C7).  Or a block of sites,
@@ -364,7 +329,8 @@ class Sums:
             setattr(self, name, joined(getattr(self, name)))
 
     def form(self):
-        """The polynomial, as summit takes it."""
+        """The coefficients of e[i], e[i] e[j] and e[i] e[j] e[k], by (i,), (i, j) and (i, j, k),
+        i <= j <= k."""
         form = {tuple(key): np.zeros_like(self.value) for count in (1, 2, 3)
                 for key in itertools.combinations_with_replacement(range(self.known), count)}
 
@@ -695,8 +661,9 @@ class Prisms:
         return inverted(at(ahead, place))[0] - beyond
 
     def expand(self):
-        """The left side of (C3): its value at X and P, a polynomial, as summit takes it, and a
-        bound of its difference from both, infinite where there is none."""
+        """The left side of (C3): its value at X and P, the coefficients of a polynomial, the sum
+        of their absolute values, which bounds it over the cube, and a bound of the difference from
+        value and polynomial, infinite where there is none."""
         N, shape = len(self.sites), self.shape
         n, tails = self.test_vectors()
         sums = Sums(self.known, self.angles, self.l.size)
@@ -718,7 +685,7 @@ class Prisms:
         chain = (len(self.P) + 2) * (span + -(-N // span))  # terms one after the other: (C19)
         mass = UNIT * ((chain + 256) * sums.mass + 64 * added)
         error = (sums.error + mass) * (SUM_ROUNDING + 64 * UNIT * N)
-        return sums.value, form, np.where(mass < UNIT * MASS_MAX, error, math.inf)
+        return sums.value, form, added, np.where(mass < UNIT * MASS_MAX, error, math.inf)
 
     def multipliers(self, sites, omega, mu, mu1):
         """Step (C7), from the last of these sites inwards: mu of each and of the one beyond, A and
@@ -780,14 +747,14 @@ class Prisms:
     def bound(self):
         """An upper bound of the left side of (C3) for each prism; and about how much each symbol
         adds to it, which decides where to cut."""
-        value, form, error = self.expand()
+        value, form, most, error = self.expand()
         last = np.where(self.alive, self.moved(self.sites[-1].columns), self.last)
         share = self.joined(last) + UNDERFLOW_MARGIN
         share = share / share.sum(axis=0)
         moved = np.stack([sum([np.abs(x) for key, x in form.items() if k in key])
                           for k in range(self.known)])
         more = error + moved.sum(axis=0) / 64       # so that symbols that move the ends count
-        return value + (summit(form) + error), np.where(value < 0, moved + more * share, share)
+        return value + (most + error), np.where(value < 0, moved + more * share, share)
 
 
 def least_in_double(criterion, cell):

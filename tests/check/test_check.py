@@ -1805,8 +1805,8 @@ def test_one_bound_in_two_arithmetics(np, texts, generator, monkeypatch):
             prisms = check.Prisms(fast.box(*cells_of([cell]), np.array([0])), fast.shape,
                                   fast.xstar, np.array([l / criterion.fixed.one]))
             assert all(prisms.follow())
-            value, form, error = prisms.expand()
-            bound = value + check.summit(form) + error
+            value, _, most, error = prisms.expand()
+            bound = value + most + error
         found, bounds = check.SecondVariation.bound, []
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(check.SecondVariation, "bound",
@@ -2130,32 +2130,13 @@ def worst_remainder(functions, generator, count):
     return worst
 
 
-def worst_summit(functions, generator, count):
-    """The largest quotient, or one above 1, of a polynomial in a cube, on a grid, and its bound."""
-    worst, np = 0, check.np
-    for _ in range(count):
-        known = generator.choice((2, 3))
-        keys = [key for n in (1, 2, 3)
-                for key in itertools.combinations_with_replacement(range(known), n)]
-        some = generator.sample(keys, generator.choice((1, 2, 2, 3, len(keys))))
-        form = {key: np.array([(key in some) * generator.uniform(-1, 1)]) for key in keys}
-        axis = np.linspace(-1, 1, 21)
-        e = np.stack(np.meshgrid(*[axis] * known)).reshape(known, -1)
-        true = sum([x * math.prod([e[k] for k in key]) for key, x in form.items()])
-        bound = functions.summit(form)[0]
-        worst = max(worst, (true.max() + 1e-12) / (bound + 2e-12) if bound >= 0 else 2)
-        if worst > 1:
-            break
-    return worst
+WORST = (worst_bending, worst_remainder, worst_bending)
 
 
-WORST = (worst_bending, worst_remainder, worst_summit, worst_bending)
-
-
-@pytest.mark.parametrize("worst", WORST[:3])
+@pytest.mark.parametrize("worst", WORST[:2])
 def test_lockstep_terms(np, generator, worst):
-    """What is left of a wave is bounded, hardly too far; and a polynomial over the cube."""
-    assert 0.99 < worst(check, generator, 3000 if worst != worst_summit else 400) <= 1
+    """What is left of a wave is bounded, hardly too far."""
+    assert 0.99 < worst(check, generator, 3000) <= 1
 
 
 @pytest.mark.parametrize("worst, old, new", [
@@ -2164,10 +2145,10 @@ def test_lockstep_terms(np, generator, worst):
     (0, "H * (c * second + s * (rest + third))", "0"), (0, "c * second + s", "s"),
     (0, "+ s * (rest + third)", ""), (0, "s * (rest + third)", "s * rest"),
     (0, "s * (rest + third)", "s * third"), (0, "third)) + W", "third))"),
-    (3, "bend * products(xi), 0", "-bend * products(xi), 0"), (3, "x /= 2", "pass"),
-    (3, "x += part * xi", "x -= part * xi"), (3, "xi[i + j - m]", "xi[m]"),
-    (3, "mean = mean + x / 2", "mean = mean - x / 2"), (3, "mean + x / 2", "mean + x"),
-    (3, "if m in (i, j)", "if i == j == m"), (3, "if m in (i, j)", "if i < j and m in (i, j)"),
+    (2, "bend * products(xi), 0", "-bend * products(xi), 0"), (2, "x /= 2", "pass"),
+    (2, "x += part * xi", "x -= part * xi"), (2, "xi[i + j - m]", "xi[m]"),
+    (2, "mean = mean + x / 2", "mean = mean - x / 2"), (2, "mean + x / 2", "mean + x"),
+    (2, "if m in (i, j)", "if i == j == m"), (2, "if m in (i, j)", "if i < j and m in (i, j)"),
     (1, "np.where(P * A0 > 0, fourth, rest * rest / 2)", "fourth"),
     (1, "np.where(P * A0 > 0, fourth, rest * rest / 2)", "rest * rest / 2"),
     (1, "P * A0 > 0", "P * A0 < 0"), (1, " + alpha * far", ""), (1, "/ 2 + fourth", "/ 2"),
@@ -2178,22 +2159,14 @@ def test_lockstep_terms(np, generator, worst):
     (1, "+ alpha * second", ""), (1, "+ b * third + beta", "+ beta"),
     (1, "beta * (rest + third)", "beta * rest"), (1, "beta * (rest + third)", "beta * third"),
     (1, " + W * weight", ""),
-    (1, "H * (a * far", "H * H / 2 * (a * far"),
-    (2, "constant + up +", "constant +"), (2, "+ down * t * t", ""),
-    (2, "- 2 * down * t", "- 3 * down * t"),
-    (2, "+ np.maximum(twist[i] - up, 0)", ""), (2, "twist[i] - up", "twist[i] - 2 * up"),
-    (2, "linear[k] = linear[k] + x", "linear[k] = linear[k]"),
-    (2, "np.abs(odd) + even", "odd + even"),
-    (2, "np.abs(odd) + even", "np.abs(odd)")])
+    (1, "H * (a * far", "H * H / 2 * (a * far")])
 def test_no_term_may_be_missing(np, generator, worst, old, new):
     """Each of them decides somewhere: without it the bounds fail the test above."""
-    source = inspect.getsource((check.bending, check.remainder, check.summit,
-                                check.quadratic)[worst])
+    source = inspect.getsource((check.bending, check.remainder, check.quadratic)[worst])
     assert source.count(old) == 1
     names = {**vars(lockstep)}
     exec(source.replace(old, new), names)
-    assert WORST[worst](types.SimpleNamespace(**names), generator,
-                        300 if worst == 2 else 2000) > 1
+    assert WORST[worst](types.SimpleNamespace(**names), generator, 2000) > 1
 
 
 def left_side(waves, amplitudes, lanes, n, tails, l, lane, size, m=mp):
@@ -2211,7 +2184,8 @@ def left_side(waves, amplitudes, lanes, n, tails, l, lane, size, m=mp):
 
 @pytest.mark.parametrize("chosen", ["by the checker", "at random"])
 def test_lockstep_bound(np, generator, chosen):
-    """At all sorts of points of a prism the true left side of (3) is below the bound."""
+    """At all sorts of points of a prism the true left side of (3) is below the bound, and below
+    the polynomial and its error."""
     cases = 0
     least = math.inf
     for _ in range(12 * TORTURE):
@@ -2228,6 +2202,7 @@ def test_lockstep_bound(np, generator, chosen):
                 tails = [draw.uniform(0, 2, t.shape) for t in tails]
                 prisms.test_vectors = lambda: (n, tails)
             bound, _ = prisms.bound()
+            value, form, _, error = prisms.expand()
         for lane in range(prisms.size):
             both = [lane, lane + prisms.size]
             count = sum(bool(site[0][both].any()) for site in prisms.sites)
@@ -2242,11 +2217,14 @@ def test_lockstep_bound(np, generator, chosen):
 
             worst = max(itertools.product((-1, 1), repeat=prisms.angles + 2), key=about)
             for eta in (None, [Fraction(e) for e in worst]):
-                _, abc, angles = inside(generator, prisms, lane, eta)
+                eta, abc, angles = inside(generator, prisms, lane, eta)
                 true = left_side(known, abc, true_orbit(known, abc, angles, count), n, tails,
                                  mp.mpf(float(prisms.l[lane])), lane, prisms.size)
-                assert true <= bound[lane]
-                least = min(least, bound[lane] - true if true else 1)
+                model = mp.mpf(float(value[lane])) + sum(
+                    mp.mpf(float(x[lane])) * math.prod([real(eta[k]) for k in key])
+                    for key, x in form.items())
+                assert true <= bound[lane] and true <= model + float(error[lane])
+                least = min(least, model + float(error[lane]) - true if true else 1)
                 cases += 1
     assert cases > 36 * TORTURE and 0 < least < (1e-6 if chosen == "at random" else 1)
 
@@ -2294,7 +2272,7 @@ def test_sums_in_blocks(np, generator, monkeypatch):
             prisms.test_vectors = lambda: vectors
             for sites in (1, 3, N):
                 monkeypatch.setattr(check, "BLOCK", sites * lanes)
-                value, form, error = prisms.expand()
+                value, form, _, error = prisms.expand()
                 found.append((np.stack([value, *form.values()]), error))
         (ones, _), (threes, less), (whole, error) = found
         good = (error < 0.1) & (N > 6)
@@ -2361,7 +2339,7 @@ def test_lockstep_polynomial(np, generator):
             prisms.test_vectors = lambda: ([v * site[0] for v, site in zip(n, prisms.sites)]
                                         + [0 * n[0]] * (len(prisms.sites) - 4), tails)
             tails = [0 * box.l] * len(prisms.sites)
-            value, form, error = prisms.expand()
+            value, form, _, error = prisms.expand()
             whole = prisms.sites[3][0][:size] & prisms.sites[3][0][size:]
             lefts.append(np.where(whole, error, math.nan))
             for lane in range(size):

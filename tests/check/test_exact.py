@@ -271,28 +271,9 @@ def worst_ends(names, draw, count):
     return worst
 
 
-def worst_cube(names, draw, count):
-    """cube_bound: a polynomial in a cube, on a grid, by its bound."""
-    worst = 0
-    for _ in range(count):
-        known, size = draw.choice((2, 2, 2, 3)), draw.choice((5, 1 << 30))
-        keys = [key for n in (1, 2, 3)
-                for key in itertools.combinations_with_replacement(range(known), n)]
-        some = draw.choice((draw.sample(keys, draw.choice((1, 2, 3, len(keys)))),
-                            [(0,), (0, 0), draw.choice(keys)], [(1,), (0, 0), (0, 0, 1)]))
-        form = {key: (key in some) * draw.randint(-size, size) for key in keys}
-        grid = itertools.product([x / 4 for x in range(-4, 5)], repeat=known)
-        true = max(at(form, e) for e in grid)
-        bound = names["cube_bound"](form)
-        worst = max(worst, (true + 1e-9) / (bound + 2e-9) if bound >= 0 else 2)
-        if worst > 1:
-            break
-    return worst
-
-
 WORST = {"step": (worst_step, 900, 0.9), "errors": (worst_errors, 300, 0.8),
          "wave": (worst_wave, 1500, 0.9), "lane": (worst_lane, 200, 0.4),
-         "ends": (worst_ends, 300, 0.8), "cube": (worst_cube, 400, 0.99)}
+         "ends": (worst_ends, 300, 0.8)}
 
 
 @pytest.mark.parametrize("name", WORST)
@@ -393,13 +374,8 @@ def test_bounds_of_the_exact_path(name):
     ("ends", "(rest >> self.down) + 1 + len(columns)", "(rest >> self.down)"),
     ("ends", "(rest >> self.down) + 1 + len(columns)", "1 + len(columns)"),
     ("ends", "sum(map(abs, g)) * ((rest", "abs(g[0]) * ((rest"), ("ends", "// 20 + 1", "// 20"),
-    ("ends", "return value + cube_bound(form) + error", "return value + cube_bound(form)"),
-    ("cube", "linear[k] += x", "pass"), ("cube", "twist[i] += abs(x)", "twist[i] += x"),
-    ("cube", "linear[i] -= 2 * down * t", "linear[i] -= 3 * down * t"),
-    ("cube", "constant += down * t * t", "0 * t"), ("cube", "constant += up +", "constant +="),
-    ("cube", "+ max(twist[i] - up, 0)", ""), ("cube", "twist[i] - up", "twist[i] - 2 * up"),
-    ("cube", "abs(at_odd) + at_even", "at_odd + at_even"),
-    ("cube", "return -(-max(highest) - constant >>", "return (max(highest) + constant >>")])
+    ("ends", "return value + most + error", "return value + most"),
+    ("ends", "return value + most + error", "return value + error")])
 def test_no_term_of_the_exact_path_may_be_missing(name, old, new):
     """Each of them decides somewhere, and so does each sign: without it the test above fails."""
     worst, count, _ = WORST[name]
