@@ -945,9 +945,10 @@ class Lockstep:
 
     @staticmethod
     def pieces_of(cells, least):
-        """The cells whose numbers are exact in doubles, those with the fewest cuts first: as arrays
-        of index, cuts, the claim's number, l and the cell's number."""
-        some = sorted([n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) <= FAST_CUTS_MAX],
+        """The cells with an l whose numbers are exact in doubles, those with the fewest cuts first:
+        as arrays of index, cuts, the claim's number, l and the cell's number."""
+        some = sorted([n for n, (_, (_, cuts)) in enumerate(cells)
+                       if max(cuts) <= FAST_CUTS_MAX and least[n] is not None],
                       key=lambda n: sum(cells[n][1][1]))
         index, cuts = [np.array([cells[n][1][part] for n in some], np.int64).reshape(-1, 5).T
                        for part in (0, 1)]

@@ -1,10 +1,12 @@
 """The leaves of all claims, divided among processes."""
 
 import contextlib
+import math
 
 from .claim import LETTERS
 from .criterion import Criterion
 from .failures import Unusable, named
+from .limits import MAX_SITES
 from .lockstep import import_numpy_if_sound, least_in_double
 from .processes import ProcessDied, in_order
 from .progress import cost
@@ -18,6 +20,7 @@ class Problems:
 
     def __init__(self, claims, bounds=None):
         self.claims, self.bounds, self.fast, self.known = claims, bounds, None, {}
+        self.bent = {}                      # by claim: no eigenvalue of V'' is above it
 
     def criterion(self, n):
         if n not in self.known:
@@ -30,7 +33,26 @@ class Problems:
         return self.known[n]
 
     def excluded(self, leaf):
+        if self.hopeless(leaf):
+            return "the waves are so weak that %d points contradict nothing" % (2 * MAX_SITES), 0
         return self.criterion(leaf[0]).excluded(leaf[1])
+
+    def hopeless(self, leaf):
+        """Is (C3) false of all orbits for every n on the N sites that are followed at most?  This
+        saves work, so doubles are enough.
+
+        beta >= 2 cos t = 2 - bent.  v[j] = cos((j - (N + 1)/2) t) is positive for 0 <= j <= N + 1
+        if (N + 1) t < pi, and 2 |n[j]| |n[j+1]| <= |n[j]|^2 v[j+1]/v[j] + |n[j+1]|^2 v[j]/v[j+1].
+        So the left side of (C3) is at least (v[0]/v[1] - l) (|n[1]|^2 + |n[N]|^2).
+        """
+        (n, cell), criterion = leaf, self.criterion(leaf[0])
+        if n not in self.bent:
+            self.bent[n] = float(sum([(abs(wave.middle) + sum(map(abs, wave.parts)))
+                                      * (wave.k[0] ** 2 + wave.k[1] ** 2)
+                                      for wave in self.claims[n].examined]))
+        t = 2 * math.asin(min(math.sqrt(self.bent[n]) / 2, 1))
+        far, l = (MAX_SITES + 0.5) * t, criterion.least_pivot(cell) / criterion.fixed.one
+        return far < math.pi / 2 and math.cos(far) >= l * math.cos(far - t)
 
     def leaves(self):
         """The leaves P of all claims, as (number of the claim, cell), in their order."""
@@ -49,7 +71,8 @@ class Problems:
         fast = bool(self.fast) and import_numpy_if_sound()
         if fast:
             refused, pieces = self.fast.settle(
-                cells, [least_in_double(self.criterion(n), cell) for n, cell in cells],
+                cells, [None if self.hopeless(leaf) else
+                        least_in_double(self.criterion(leaf[0]), leaf[1]) for leaf in cells],
                 lambda n: self.excluded(cells[n]))
         else:
             for n, leaf in enumerate(cells):

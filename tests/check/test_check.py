@@ -2744,6 +2744,35 @@ def test_parameters_without_an_eigenvalue_above_2(texts, run):
             assert "at once" in run(sealed(with_field(changed, "at once", "yes")))[2]
 
 
+def test_waves_too_weak_for_any_orbit_are_given_up(texts, run, monkeypatch):
+    """Without a try: orbits so long would take hours."""
+    text = with_parameters(with_tree(texts["trig274"], "P"), *[("1e-12", "0")] * 3)
+    for path in check.Criterion, check.Lockstep:
+        monkeypatch.setattr(path, "attempt", None)
+    for options in ((), ("--exact",)):
+        status, out, err = run(sealed(text), *options)
+        assert (status, out) == (5, "") and "so weak that" in err
+
+
+def test_what_is_too_weak(np, texts, generator, monkeypatch):
+    """Where the form of (C3) is not negative if beta has everywhere the least value that it may."""
+    text = with_parameters(with_tree(texts["trig274"], "P"), *[("0.25", "0.125")] * 3)
+    problems, answers = check.Problems([claim_of(text)]), set()
+    assert not problems.hopeless((0, check.ROOT)) and problems.bent == {0: 0.375 * (1 + 1 + 2)}
+    monkeypatch.setattr(check, "MAX_SITES", 20)
+    for _ in range(200):
+        bent, l = 10 ** generator.uniform(-4, -1), 1 - 10 ** generator.uniform(-3, -1)
+        form = np.diag(np.full(40, 2 - bent)) - np.eye(40, k=1) - np.eye(40, k=-1)
+        form[0, 0] -= l
+        form[-1, -1] -= l
+        problems.bent[0] = bent
+        criterion = problems.criterion(0)
+        monkeypatch.setattr(criterion, "least_pivot", lambda _, l=l: l * criterion.fixed.one)
+        answers.add(problems.hopeless((0, check.ROOT)))
+        assert problems.hopeless((0, check.ROOT)) == (np.linalg.eigvalsh(form)[0] >= 0)
+    assert answers == {False, True}
+
+
 def at_once(text, centre, half, together):
     text = with_parameters(with_tree(text, "P"), *zip(centre, half))
     text = with_field(with_field(text, "together", together), "at once", "yes")
