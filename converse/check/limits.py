@@ -14,5 +14,5 @@ MATTERS_MIN = 2.0 ** -30                # share of an axis that matters, of the 
 # When n is chosen, a site of this reach (radians) has beta + p |P| with p = (first + second reach)
 # reach; a leaf's pieces take these pairs in turn.  docs/proofs/checker.md has the experiment.
 SITE_PENALTIES = (0, 0.2), (0.3, 0), (0, 1.0), (1.0, 0)
-MAX_SITES, FIRST_TRY_SITES = 1 << 15, 96    # of half an orbit, at most; before (C3) is tried
+MAX_SITES, FIRST_TRY_SITES = 1 << 17, 96    # of half an orbit, at most; before (C3) is tried
 MAX_WAVES, MAX_K = 16, 100              # of a potential; |k0| and |k1|

@@ -4,7 +4,9 @@
    sum2_of_sum and sum2_of_product are exact unless something overflows, and then NaN or infinite,
    or lost below 2^-1000.  sum2_plus and sum2_times lose 8 u^2 of the absolute values of what they
    add and of the product, u = 2^-53, if of each operand |low| <= 2 u |high|, and 8 u times that
-   lost if these are larger. */
+   lost if these are larger.  sum2_over loses 16 u^2 of the quotient: the difference of the high
+   parts is exact, and at most u of a.  With the low parts, of at most 2 u, it is rounded three
+   times. */
 #ifndef CONVERSE_SUM2_H
 #define CONVERSE_SUM2_H
 
@@ -48,6 +50,14 @@ INLINE sum2 sum2_times(sum2 a, sum2 b)
     const sum2 product = sum2_of_product(a.high, b.high);
 
     return sum2_of_sum(product.high, product.low + (a.high * b.low + a.low * b.high));
+}
+
+INLINE sum2 sum2_over(sum2 a, vec b)
+{
+    const vec quotient = a.high / b;
+    const sum2 product = sum2_of_product(quotient, b);
+
+    return sum2_of_sum(quotient, ((a.high - product.high) - product.low + a.low) / b);
 }
 
 #endif

@@ -80,17 +80,27 @@ typedef struct {
     vec along[SLOTS], slope[COLUMNS], square[PAIRS];
 } sums;
 
-/* Sites are summed in blocks of so many, and then the blocks: so the roundings of a sum over N
-   sites grow with BLOCK and N/BLOCK and not with N. */
-enum { BLOCK = 64 };
+/* Sites are summed in blocks of so many, and then the blocks.  What the sum of the blocks loses is
+   summed apart: so the roundings of a sum grow with BLOCK, and not with the number of sites. */
+enum { BLOCK = 32 };
 
 /* Adds the vectors of a block's sums to the total, and begins the block anew. */
-static void add_block(vec total[], vec block[], size_t vectors)
+static void add_block(vec total[], vec lost[], vec block[], size_t vectors)
 {
     for (size_t k = 0; k < vectors; k++) {
-        total[k] += block[k];
+        const sum2 sum = sum2_of_sum(total[k], block[k]);
+        total[k] = sum.high;
+        lost[k] += sum.low;
         block[k] = every(0.0);
     }
+}
+
+/* Adds the last block, and what was lost. */
+static void end_blocks(vec total[], vec lost[], vec block[], size_t vectors)
+{
+    add_block(total, lost, block, vectors);
+    for (size_t k = 0; k < vectors; k++)
+        total[k] += lost[k];
 }
 
 /* Sets the numbers of site q for each wave that depend on the prisms alone: (5) is
@@ -228,9 +238,10 @@ static vec ends_of(const batch *w, mask active)
 static void sum_up(batch *w, sums *total, mask active)
 {
     const int begin = begin_of(w, active), end = end_of(w, active);
-    sums t;
+    sums t, lost;
 
     memset(&t, 0, sizeof t);
+    memset(&lost, 0, sizeof lost);
     memset(total, 0, sizeof *total);
     for (int j = begin; j <= end; j++) {
         const point *const q = site_of(w, j);
@@ -244,9 +255,10 @@ static void sum_up(batch *w, sums *total, mask active)
         FOR_WAVES(w, i)
             sum_wave(w, &t, q, i, omega, m);
         sum_left(w, &t, q, j, weights);
-        if (j % BLOCK == 0 || j == end)
-            add_block((vec *)total, (vec *)&t, sizeof t / sizeof(vec));
+        if (j % BLOCK == 0)
+            add_block((vec *)total, (vec *)&lost, (vec *)&t, sizeof t / sizeof(vec));
     }
+    end_blocks((vec *)total, (vec *)&lost, (vec *)&t, sizeof t / sizeof(vec));
     FOR_WAVES(w, i)
         add_moves(w, i, total->along[i], total->slope);
     const vec tails = w->l * ends_of(w, active);
@@ -254,65 +266,65 @@ static void sum_up(batch *w, sums *total, mask active)
     total->mass += tails;
 }
 
-/* p sin of a wave at a site, as a sum of two doubles: off by 2^-59 |p|, for the sine, its phase
-   (wave_at) and the roundings. */
+/* k.x, as a sum of two doubles. */
+INLINE sum2 exact_dot_k(const batch *w, int wave, const vec x[2])
+{
+    return sum2_plus(sum2_of_product(every(k_of(w, wave)[0]), x[0]),
+                     sum2_of_product(every(k_of(w, wave)[1]), x[1]));
+}
+
+/* p (m sin y + omega cos y) of a wave at a site, as a sum of two doubles.  Sines are off by 2^-100,
+   and by 2^-61 more if the wave has a phase (wave_at). */
 INLINE sum2 exact_pull(const batch *w, const point *q, int wave)
 {
-    mask s, c;
-    sum2 sine;
+    const mask angle = angle_of(w, q, wave);
+    const sum2 p = { w->p[wave], w->p_low[wave] };
+    const sum2 m = exact_dot_k(w, wave, q->mu), n = exact_dot_k(w, wave, q->n);
+    const sum2 sine = fine_sine(angle), cosine = fine_sine(angle + QUARTER_TURN);
 
-    turns_sincos(&s, &c, angle_of(w, q, wave));
-    sine.high = sine_in_two(s, &sine.low);
-    return sum2_times((sum2){ w->p[wave], w->p_low[wave] }, sine);
+    return sum2_times(p, sum2_plus(sum2_times(m, sine), sum2_times(sum2_times(n, n), cosine)));
 }
 
 /* Where roundings alone keep the bound from being negative: what (2) leaves at the sites but 0 and
    1, G, is computed with twice the digits of a double, and belongs to the slopes with its sign,
 
-       G.D = G.L e + G.(T + r),  G = g + beta mu - mu[j-1] - mu[j+1],
-       beta = 2 - sum of p sin k k'.
+       G.D = G.L e + G.(T + r),
+       G = 2 mu - mu[j-1] - mu[j+1] - sum of k p (m sin y + omega cos y).
 
-   So instead of roundings of beta that are added up over the orbit by their absolute values there
-   are those of mu, with signs.  g is a double as before, and off by (10 + N') u S of |k|^2 |n|^2;
-   p sin by 2^-59 |p|, so that what is multiplied by mu is off by 2^-59 S |k| |mu|, and all other
-   roundings, of at most 200 operations on sums of two, by 2^-90 of the absolute values.  `left` has
-   4 (14 + N') u (1 + S) and 2^-56 (1 + S) of these, and 2^-80 of the neighbours' mu. */
+   So instead of roundings of g and beta that are added up over the orbit by their absolute values
+   there are those of mu, with signs.  All roundings, of at most 200 operations on sums of two, are
+   2^-95 of the absolute values.  `left` has 2^-90 of these and of S times the weights, or with
+   phases 2^-60 of the latter, and 2^-80 of the neighbours' mu. */
 static void leave_exactly(batch *w, sums *total, mask active)
 {
     const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
-    const vec nothing[2] = { every(0.0), every(0.0) };
-    sums t;
+    sums t, lost;
 
     memset(&t, 0, sizeof t);
+    memset(&lost, 0, sizeof lost);
     total->left = pick(active, every(0.0), total->left);
     for (int j = begin; j <= end; j++) {
         const point *const q = site_of(w, j);
         const mask own = active & within(w, j);
-        vec omega[SLOTS];
-        sum2 pull[SLOTS], m[SLOTS];
+        vec omega[SLOTS], m[SLOTS];
+        sum2 pull[SLOTS];
 
         if (j == ORIGIN || j == ORIGIN + 1)
             continue;
-        for (int i = 0; i < 2; i++)
-            omega[i] = square(q->n[i]);
-        FOR_WAVES(w, i) {
+        weights_along(w, q, omega, m);
+        FOR_WAVES(w, i)
             pull[i] = exact_pull(w, q, i);
-            m[i] = sum2_plus(sum2_of_product(every(k_of(w, i)[0]), q->mu[0]),
-                             sum2_of_product(every(k_of(w, i)[1]), q->mu[1]));
-        }
-        const vec of_n = weights_of(w, omega, nothing) + TINY;
-        const vec of_mu = weights_of(w, nothing, q->mu) + TINY;
+        const vec weights = weights_of(w, omega, m) + TINY;
         const vec sizes = q->err_beta * (1.0 / grain_of(w));
         for (int i = 0; i < 2; i++) {
             const vec before = q[-1].mu[i], after = q[1].mu[i];
             sum2 G = sum2_plus(sum2_of_sum(2.0 * q->mu[i], -before), (sum2){ -after, every(0.0) });
             FOR_WAVES(w, wave) {
-                const sum2 x = sum2_times(pull[wave], m[wave]);
                 const vec k = every(-k_of(w, wave)[i]);
-                G = sum2_plus(G, sum2_times((sum2){ k, every(0.0) }, x));
+                G = sum2_plus(G, sum2_times((sum2){ k, every(0.0) }, pull[wave]));
             }
-            const vec leaves = pick(own, G.high - gradient(w, q, i), every(0.0));
-            const vec left = 4.0 * q->err_beta * of_n + 0x1p-56 * sizes * of_mu +
+            const vec leaves = pick(own, G.high, every(0.0));
+            const vec left = w->problem->err_pull * sizes * weights +
                              0x1p-80 * (mag(before) + mag(after)) + 0x1p-51 * mag(leaves);
             t.left += pick(own, left * q->rad[i], every(0.0));
             t.mass += mag(leaves) * q->rad[i];
@@ -320,10 +332,10 @@ static void leave_exactly(batch *w, sums *total, mask active)
             for (int k = 0; k < columns; k++)
                 t.slope[k] += leaves * q->lin[i][k];
         }
-        if (j % BLOCK == 0 || j == end)
-            add_block((vec *)total, (vec *)&t, sizeof t / sizeof(vec));
+        if (j % BLOCK == 0)
+            add_block((vec *)total, (vec *)&lost, (vec *)&t, sizeof t / sizeof(vec));
     }
-    add_block((vec *)total, (vec *)&t, sizeof t / sizeof(vec));
+    end_blocks((vec *)total, (vec *)&lost, (vec *)&t, sizeof t / sizeof(vec));
 }
 
 /* The cubic part of (4): cubic[n] at pair(k, l) is a coefficient of e_n e_k e_l, one of those that
@@ -331,9 +343,10 @@ static void leave_exactly(batch *w, sums *total, mask active)
 static void sum_cubic(batch *w, mask active)
 {
     const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
-    vec block[COLUMNS][PAIRS];
+    vec block[COLUMNS][PAIRS], lost[COLUMNS][PAIRS];
 
     memset(block, 0, sizeof block);
+    memset(lost, 0, sizeof lost);
     for (int j = begin; j <= end; j++) {
         const point *q = site_of(w, j);
         const mask now = active & within(w, j);
@@ -368,9 +381,10 @@ static void sum_cubic(batch *w, mask active)
                 block[n][kl] += pick(now, sum, every(0.0));
             }
         }
-        if (j % BLOCK == 0 || j == end)
-            add_block(w->cubic[0], block[0], COLUMNS * PAIRS);
+        if (j % BLOCK == 0)
+            add_block(w->cubic[0], lost[0], block[0], COLUMNS * PAIRS);
     }
+    end_blocks(w->cubic[0], lost[0], block[0], COLUMNS * PAIRS);
 }
 
 /* At least the largest value over the cube of the part with signs; without its cubic terms if they
@@ -429,11 +443,12 @@ static vec summit(const batch *w, int with_cubic)
    omega + |m|.)  Sines are off by 1.01 u, omega and m by 5 u, and two products and a sum make A and
    B off by 10 u of the weights; products of them, p among these, by 15 u more.  At each site at
    most 22 numbers, of 16 waves, are added to a sum, and each addition rounds by u of the partial
-   sums of its block, of n = min(N, BLOCK) sites; the blocks are N/BLOCK + 2 at most, and summit and
-   the last sums make 45 additions.  So all is off by (22 n + N/64 + 72) u of the mass, where `each`
-   is (32 n + N/32 + 128) u.  Positive sums are off by (22 n + N/64 + 32) u of themselves, which
-   `each` covers, too.  In leave_exactly the sites ORIGIN and ORIGIN + 1 end no block; a block has
-   2 n sites at most, of 2 additions each, which are fewer than 22 n.  (2) leaves at most
+   sums of its block, of n = min(N, BLOCK) sites.  The blocks are fewer than 2^13, so the sum of what
+   they lose is off by 2^26 u^2, and this and what it is added to by u.  Summit and the last sums
+   make 45 additions.  So all is off by (22 n + 74) u of the mass, where `each` is (32 n + 128) u.
+   Positive sums are off by (22 n + 34) u of themselves, which `each` also covers.  In leave_exactly
+   the sites ORIGIN and ORIGIN + 1 end no block; a block has 2 n sites at most, of 2 additions each,
+   which are fewer than 22 n.  (2) leaves at most
    (10 + N') u (1 + S) of the weights, N' waves, and 2 u of the neighbours' mu; `left` has
    4 (14 + N')(1 + S) and 8. */
 static void bound_with(batch *w, mask active, int signs)
@@ -445,8 +460,7 @@ static void bound_with(batch *w, mask active, int signs)
 
     for (int k = 0; k < LANES; k++) {
         const int sites = number(&w->until, k) - number(&w->since, k) + 1;
-        const double block = sites < BLOCK ? sites : BLOCK;
-        put_at(&each, k, 0x1p-53 * (32.0 * block + (double)sites / 32.0 + 128.0));
+        put_at(&each, k, 0x1p-53 * (32.0 * (sites < BLOCK ? sites : BLOCK) + 128.0));
     }
     sum_up(w, &t, active);
     for (int pass = 0; any(active) && pass < 2; pass++) {

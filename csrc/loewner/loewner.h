@@ -12,7 +12,7 @@ typedef struct loewner loewner;
 enum { SLOTS = MOST_WAVES + 2 };
 
 /* The most points of an orbit.  The standard map needs 19,808 for k = 0.9717. */
-enum { MAX_POINTS = 1 << 15 };
+enum { MAX_POINTS = 1 << 17 };
 
 /* For a problem whose angles are also in radians, and whose x* is chosen.  longest: the most
    points of an orbit, at most MAX_POINTS.  NULL: no memory. */

@@ -454,6 +454,8 @@ static void set_turns(loewner *w, const patch *problem, const apm_t scale)
         for (int m = 0; m < w->n_parameters; m++)
             w->turns.part[i][m] = whole(w, problem->part[given][m], longer, w->coarse);
         w->turns.phase[i] = (uint64_t)whole(w, problem->phase[given], scale, 0);
+        if (w->phase[i] != 0.0)
+            w->err_pull = 0x1p-60;
         for (int j = 0; j < 2; j++)
             w->turns.k[i][j] = factor_of(w->k[i][j]);
     }
@@ -468,6 +470,7 @@ loewner *loewner_new(const patch *problem, int longest)
     if (w == NULL)
         return NULL;
     w->usable = w->length = 1;
+    w->err_pull = 0x1p-90;
     w->longest = longest;
     apm_init(scale);
     units_of_radian(scale);

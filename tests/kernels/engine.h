@@ -125,17 +125,20 @@ static void look_root(const void *work, int n, known_point *p)
     copy(p->mu, q->mu, 2);
 }
 
-static void sincos_of(uint64_t turns, int64_t *sine, int64_t *cosine, double *next, double *lacks)
+static void sincos_of(uint64_t turns, int64_t *sine, int64_t *cosine, double y[])
 {
     mask s, c;
     vec rest;
 
     turns_sincos(&s, &c, turns - none());
     const vec first = sine_in_two(s, &rest), simply = sine_of(s);
+    const sum2 fine = fine_sine(turns - none());
     *sine = ((const int64_t *)&s)[LANES - 1];
     *cosine = ((const int64_t *)&c)[LANES - 1];
-    *next = at(&first, LANES - 1) == at(&simply, LANES - 1) ? at(&first, LANES - 1) : NAN;
-    *lacks = at(&rest, LANES - 1);
+    y[0] = at(&first, LANES - 1) == at(&simply, LANES - 1) ? at(&first, LANES - 1) : NAN;
+    y[1] = at(&rest, LANES - 1);
+    y[2] = at(&fine.high, LANES - 1);
+    y[3] = at(&fine.low, LANES - 1);
 }
 
 #define HOOKS_OF(engine) hooks_##engine

@@ -28,8 +28,9 @@ typedef struct {
     /* What is known of point n of this orbit.  mu: after bound, and only where it is not zero. */
     void (*look)(const void *work, int n, known_point *p);
 
-    /* turns_sincos: sine and cosine in 2^-62, the double next to the sine, and what that lacks. */
-    void (*sincos)(uint64_t turns, int64_t *sine, int64_t *cosine, double *next, double *lacks);
+    /* turns_sincos: sine and cosine in 2^-62; the double next to the sine, and what that lacks; and
+       fine_sine, high and low. */
+    void (*sincos)(uint64_t turns, int64_t *sine, int64_t *cosine, double y[]);
 } hooks;
 
 #ifdef __x86_64__

@@ -246,7 +246,7 @@ static int k_sincos(const request *r, double y[])
 {
     int64_t s, c;
 
-    hooks_of(r->w)->sincos((uint64_t)r->more[0] << 32 | (uint64_t)r->more[1], &s, &c, &y[4], &y[5]);
+    hooks_of(r->w)->sincos((uint64_t)r->more[0] << 32 | (uint64_t)r->more[1], &s, &c, y + 4);
     y[0] = (double)(s >> 32);
     y[1] = (double)(s & UINT32_MAX);
     y[2] = (double)(c >> 32);
@@ -279,7 +279,7 @@ static const row kernels[] = {
     { "waves_bound", 3, 5 + 2 * SITES, 1, 0, SITES, SITES, k_bound },
     { "waves_sites", 2, ANY_SITE * ANY_SHOWN, 1, 0, SITES, SITES, k_sites },
     { "waves_cell", 10, 18, 1, 0, 0x1p60, 0x1p60, k_shifted },
-    { "loewner_sincos", 2, 6, 0, 0, 0x1p33, 0x1p33, k_sincos },
+    { "loewner_sincos", 2, 8, 0, 0, 0x1p33, 0x1p33, k_sincos },
     { "waves_largest", 0, 1, 1, 1, SITES, SITES, k_largest },
 };
 

@@ -611,7 +611,7 @@ def bound_margins(prism, q, out, plain, disturbed=False):
                 sums += abs(m[i]) * residual(p, q[j], q[j - 1], q[j + 1], i)
                 claimed += abs(m[i]) * q[j].residual[i]
     count = until - since + 1
-    each = UNIT * (32 * min(count, 64) + mp(count) / 32 + 128)
+    each = UNIT * (32 * min(count, 32) + 128)
     if disturbed:
         for key, x in signed.items():
             add(x, *key)

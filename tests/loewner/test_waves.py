@@ -234,6 +234,20 @@ def test_the_bound_holds(shifts):
     assert seen > CASES // 20 and proved > seen // 20 and close > seen // 10, (seen, proved, close)
 
 
+def test_a_phase_is_rounded_where_twice_the_digits_are_computed():
+    """It is a whole number of 2^-64 turns, and what (2) leaves must be bounded with its rounding."""
+    left = []
+    for phase in (Fraction(0), Fraction(1, 2)):
+        waves = [(*k, phase, Fraction(3, 2), *[Fraction(0)] * 3) for k in ((1, 0), (0, 1))]
+        patch = SimpleNamespace(waves=waves, parameters=0, centre=[Fraction(3)] * 2,
+                                half=[Fraction(1, 10 ** 6)] * 2, frame=(1, 0, 0, 1),
+                                xstar=[Fraction(1)] * 2, shifts=[[Fraction(0)] * 3] * 2)
+        out = kernels.call("waves_bound", [*arguments(patch), -4, 5, 2], 5 + 2 * SITES, 20)
+        assert out[3]
+        left.append(out[4])
+    assert left[1] > 100 * left[0], left
+
+
 def size_of(wave):
     return mp(abs(wave[3]) + sum(map(abs, wave[4:])))
 
