@@ -57,7 +57,7 @@ typedef struct {
 } cv_cell;
 
 /* The sharper method tries no prism that was cut more often along one axis. */
-enum { CV_MAX_CUTS = 46 };
+enum { CV_MAX_CUTS = 50 };
 
 typedef struct cv_search cv_search;
 

@@ -42,12 +42,15 @@ static double cell_largest(const loewner *w, const double low[3], const double h
 }
 
 /* x times the place of a cell's middle along an axis, (2 index + 1) 2^-cuts - 1, less a number in
-   [0, 1).  |x| < 2^BITS and cuts <= CV_MAX_CUTS, so the product has 126 bits at most. */
+   [0, 1).  |x| < 2^BITS and cuts <= CV_MAX_CUTS: the product with the upper part of x has 98 bits at
+   most, that with its lower bits 82. */
 static int128 times_middle(int128 x, const cv_cell *cell, int axis)
 {
-    const int64_t cells = INT64_C(1) << cell->cuts[axis];
+    const int cuts = cell->cuts[axis], lower = cuts < 32 ? cuts : 32;
+    const int64_t cells = INT64_C(1) << cuts, middle = 2 * (int64_t)cell->index[axis] + 1 - cells;
+    const int128 rest = x & ((INT64_C(1) << lower) - 1);
 
-    return (x * (2 * (int64_t)cell->index[axis] + 1 - cells)) >> cell->cuts[axis];
+    return ((x >> lower) * middle + (rest * middle >> lower)) >> (cuts - lower);
 }
 
 /* The region: centre, shifts and widths of a cell's slice.  The centre is off by 1 unit of 2^-64

@@ -611,7 +611,7 @@ def bound_margins(prism, q, out, plain, disturbed=False):
                 sums += abs(m[i]) * residual(p, q[j], q[j - 1], q[j + 1], i)
                 claimed += abs(m[i]) * q[j].residual[i]
     count = until - since + 1
-    each = UNIT * (32 * min(count, 32) + 128)
+    each = UNIT * (32 * min(count, 16) + 128)
     if disturbed:
         for key, x in signed.items():
             add(x, *key)
@@ -1033,13 +1033,13 @@ def test_the_finest_cell():
     """Where a torus is near it is tried, and not cut; what is finer is not even tried."""
     problem = line("0.001", "0.001")
     task = Task(problem, Settings("loewner", 1000, stubborn=True), ("2", "2"))
-    for cuts in (45, 46, 47):
+    for cuts in (49, 50, 51):
         index = [int(2 ** cuts * ((1 / math.pi + x) % 1)) for x in (0.5698402909, 0.7548776662)]
         grown = grow(task, ((*index, 0, 0, 0), (cuts, cuts, 0, 0, 0), 0), 1)
         assert grown.text == "U" and sum(grown.counts.reasons) == 1
-        assert grown.counts.reasons[2 if cuts <= 46 else 4] == 1
-    for cuts in (46, 47):
-        with pytest.raises(ArithmeticError) if cuts > 46 else nullcontext():
+        assert grown.counts.reasons[2 if cuts <= 50 else 4] == 1
+    for cuts in (50, 51):
+        with pytest.raises(ArithmeticError) if cuts > 50 else nullcontext():
             kernels.call("loewner_cell", [1] * 13 + [0] * 5 + [cuts] * 5, 27, 1080)
 
 
