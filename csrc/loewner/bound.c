@@ -74,11 +74,16 @@ static void set_multipliers(batch *w, mask active)
     }
 }
 
-/* The sums of a pass over the orbit: vectors only, see add_block. */
+/* The sums of a pass over the orbit: vectors only, of which as many as used_of are in use. */
 typedef struct {
     vec centre, mass, rest, cubes, rounding, left;
-    vec along[SLOTS], slope[COLUMNS], square[PAIRS];
+    vec slope[COLUMNS], square[PAIRS], along[SLOTS];
 } sums;
+
+static size_t used_of(const batch *w)
+{
+    return offsetof(sums, along) / sizeof(vec) + (size_t)waves_of(w);
+}
 
 /* Sites are summed in blocks of so many, and then the blocks.  What the sum of the blocks loses is
    summed apart: so the roundings of a sum grow with BLOCK, and not with the number of sites. */
@@ -256,9 +261,9 @@ static void sum_up(batch *w, sums *total, mask active)
             sum_wave(w, &t, q, i, omega, m);
         sum_left(w, &t, q, j, weights);
         if (j % BLOCK == 0)
-            add_block((vec *)total, (vec *)&lost, (vec *)&t, sizeof t / sizeof(vec));
+            add_block((vec *)total, (vec *)&lost, (vec *)&t, used_of(w));
     }
-    end_blocks((vec *)total, (vec *)&lost, (vec *)&t, sizeof t / sizeof(vec));
+    end_blocks((vec *)total, (vec *)&lost, (vec *)&t, used_of(w));
     FOR_WAVES(w, i)
         add_moves(w, i, total->along[i], total->slope);
     const vec tails = w->l * ends_of(w, active);
@@ -333,9 +338,9 @@ static void leave_exactly(batch *w, sums *total, mask active)
                 t.slope[k] += leaves * q->lin[i][k];
         }
         if (j % BLOCK == 0)
-            add_block((vec *)total, (vec *)&lost, (vec *)&t, sizeof t / sizeof(vec));
+            add_block((vec *)total, (vec *)&lost, (vec *)&t, used_of(w));
     }
-    end_blocks((vec *)total, (vec *)&lost, (vec *)&t, sizeof t / sizeof(vec));
+    end_blocks((vec *)total, (vec *)&lost, (vec *)&t, used_of(w));
 }
 
 /* The cubic part of (4): cubic[n] at pair(k, l) is a coefficient of e_n e_k e_l, one of those that
