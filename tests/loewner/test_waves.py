@@ -235,7 +235,7 @@ def test_the_bound_holds(shifts):
 
 
 def test_a_phase_is_rounded_where_twice_the_digits_are_computed():
-    """It is a whole number of 2^-64 turns, and what (2) leaves must be bounded with its rounding."""
+    """It is a whole number of 2^-64 turns, and what (2) leaves is bounded with its rounding."""
     left = []
     for phase in (Fraction(0), Fraction(1, 2)):
         waves = [(*k, phase, Fraction(3, 2), *[Fraction(0)] * 3) for k in ((1, 0), (0, 1))]
