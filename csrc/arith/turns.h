@@ -127,8 +127,8 @@ INLINE vec sine_in_two(mask s, vec *lacks)
        f = 1 - z/(2 3) (1 - z/(4 5) (1 - ... z/(26 27)))    for the sine.
 
    In units of u^2 = 2^-106, x is off by 9 of itself and z by 26.  A step loses 26 + 8 + 16 of z f/d
-   and 8 of 1 + z f/d, and multiplies the error of f by z/d.  For the cosine z/d is below 0.31, and f
-   is off by less than 38.  For the sine z/d is below 0.11, f is off by less than 17, and x f by
+   and 8 of 1 + z f/d, and multiplies the error of f by z/d.  For the cosine z/d is below 0.31, and
+   f is off by less than 38.  For the sine z/d is below 0.11, f is off by less than 17, and x f by
    0.79 (17 + 9 + 8). */
 INLINE sum2 fine_sine(mask turns)
 {

@@ -42,8 +42,8 @@ static double cell_largest(const loewner *w, const double low[3], const double h
 }
 
 /* x times the place of a cell's middle along an axis, (2 index + 1) 2^-cuts - 1, less a number in
-   [0, 1).  |x| < 2^BITS and cuts <= CV_MAX_CUTS: the product with the upper part of x has 98 bits at
-   most, that with its lower bits 82. */
+   [0, 1).  |x| < 2^BITS and cuts <= CV_MAX_CUTS: the product with the upper part of x has 98 bits
+   at most, that with its lower bits 82. */
 static int128 times_middle(int128 x, const cv_cell *cell, int axis)
 {
     const int cuts = cell->cuts[axis], lower = cuts < 32 ? cuts : 32;
