@@ -450,7 +450,7 @@ static vec summit(const batch *w, int with_cubic)
    most 22 numbers, of 16 waves, are added to a sum, and each addition rounds by u of the partial
    sums of its block, of n = min(N, BLOCK) sites.  The blocks are fewer than 2^14, so the sum of
    what they lose is off by 2^28 u^2, and this and what it is added to by u.  Summit and the last
-   sums make 45 additions.  So all is off by (22 n + 74) u of the mass, where `each` is (32 n + 128) u.
+   sums make 45 additions.  So all is off by (22 n + 74) u of the mass, where `each` has 32 n + 128.
    Positive sums are off by (22 n + 34) u of themselves, which `each` also covers.  In leave_exactly
    the sites ORIGIN and ORIGIN + 1 end no block; a block has 2 n sites at most, of 2 additions each,
    which are fewer than 22 n.  (2) leaves at most
