@@ -2008,6 +2008,25 @@ def test_roundings_of_slopes_where_the_lanes_meet_are_counted(np):
     assert sums.error >= shape.grain * (10 * (3 + 0.5) + 20 * (4 + 0.5))
 
 
+def test_slopes_where_the_lanes_meet_count_with_what_is_unknown_of_x(np):
+    """All coefficients of G, of which one is negative, times the 1/2 by which x[1] is off."""
+    G = np.array([[[1.0], [-2.0], [0.5]], [[4.0], [0.0], [0.0]]])
+    prisms = types.SimpleNamespace(other=np.zeros_like, rounding=np.full((2, 1), 0.5),
+                                   shape=check.Shape([((1, 0), 0)]), ends=np.zeros((2, 2, 1)))
+    sums = types.SimpleNamespace(error=np.zeros(1))
+    check.Prisms.add_ends(prisms, sums, G, 0 * G, np.zeros((2, 1)))
+    assert sums.error >= 0.5 * (1 + 2 + 0.5 + 4)
+
+
+def test_l_as_a_double_is_not_larger(generator):
+    for _ in range(100):
+        one, l = 1 << 96, generator.randrange(1 << 96)
+        criterion = types.SimpleNamespace(least_pivot=lambda _, l=l: l,
+                                          fixed=types.SimpleNamespace(one=one))
+        found = Fraction(check.least_in_double(criterion, check.ROOT))
+        assert Fraction(l, one) * (1 - Fraction(1, 2 ** 48)) < found <= Fraction(l, one)
+
+
 def cut_short(monkeypatch, bits):
     """Centres are whole numbers of 2^-bits turns, cut downwards, so that all errors have one sign
     and nothing else hides them; and WHOLE_ERROR is what it is for 64 bits."""
