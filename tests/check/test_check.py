@@ -294,7 +294,9 @@ def test_parameters_have_the_names_of_the_input(run, tmp_path):
     for line in "parameter: \033k 2.5 3", "parameter: k 2.5 nan", "parameter: k 2.5":
         status, out, _ = run(sealed(text.replace("parameter: k 2.5 3", line)))
         assert status == 0 and "the input's" not in out and "\033" not in out
-    assert run(part_of(text))[1].count(" in 1 piece\n") == 1
+    for name in ("v0", "v1"):
+        text = with_field(text, name, "1 0.001")
+    assert run(sealed(text))[1].count(" in 1 piece\n") == 1
 
 
 def test_same_output_for_any_jobs(deep, run):
