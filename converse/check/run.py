@@ -25,7 +25,6 @@ from .workers import Problems, check_all
 
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
 FAST_CHUNK = 1 << 10, 1 << 14           # least (a batch of Lockstep) and most of the fast path
-BATCHES_ALONE = 4                       # in the least chunk if one process checks all leaves
 PORTRAIT_MAGIC = PORTRAIT[:len(MAGIC)]
 VERDICTS = {VERIFIED: "verified", PART: "verified in part", SPOT_CHECK: "spot check"}
 
@@ -222,8 +221,6 @@ def check_leaves(problems, chosen, done, jobs, bar):
     size = CHUNK
     if problems.fast:
         fewest, most = FAST_CHUNK
-        if jobs == 1:                   # each chunk ends with small batches, which take as long
-            fewest *= BATCHES_ALONE
         size = min(max(len(chosen) // (CHUNKS * jobs), fewest), most)
     jobs = max(min(jobs, -(-len(chosen) // size)), 1)       # no more processes than chunks
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
