@@ -38,12 +38,13 @@ class Problems:
         return self.criterion(leaf[0]).excluded(leaf[1])
 
     def hopeless(self, leaf):
-        """Is (C3) false of all orbits for every n on the N sites that are followed at most?  This
-        saves work, so doubles are enough.
+        """Is (C3) false of all orbits for every n on at most N = 2 MAX_SITES sites?  Near equality
+        the errors of either path are larger than what this test loses in doubles, so it refuses
+        no leaf that could be confirmed.
 
-        beta >= 2 cos t = 2 - bent.  v[j] = cos((j - (N + 1)/2) t) is positive for 0 <= j <= N + 1
-        if (N + 1) t < pi, and 2 |n[j]| |n[j+1]| <= |n[j]|^2 v[j+1]/v[j] + |n[j+1]|^2 v[j]/v[j+1].
-        So the left side of (C3) is at least (v[0]/v[1] - l) (|n[1]|^2 + |n[N]|^2).
+        beta >= 2 cos t = 2 - bent for bent <= 4.  v[j] = cos((j - (N + 1)/2) t) is positive for
+        0 <= j <= N + 1 if (N + 1) t < pi, and v[0]/v[1] falls with N.  2 |n[j]| |n[j+1]| is at most
+        |n[j]|^2 v[j+1]/v[j] + |n[j+1]|^2 v[j]/v[j+1].  So the left side of (C3) is at least (v[0]/v[1] - l) (|n[1]|^2 + |n[N]|^2).
         """
         (n, cell), criterion = leaf, self.criterion(leaf[0])
         if n not in self.bent:

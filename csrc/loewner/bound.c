@@ -297,8 +297,8 @@ INLINE sum2 exact_pull(const batch *w, const point *q, int wave)
        G = 2 mu - mu[j-1] - mu[j+1] - sum of k p (m sin y + omega cos y).
 
    So instead of roundings of g and beta that are added up over the orbit by their absolute values
-   there are those of mu, with signs.  All roundings, of at most 200 operations on sums of two, are
-   2^-95 of the absolute values.  `left` has 2^-90 of these and of S times the weights, or with
+   there are those of mu, with signs.  All roundings, at most 200 operations on sums of two between
+   any number and the result, are 2^-95 of the absolute values.  `left` has 2^-90 of these and of S times the weights, or with
    phases 2^-60 of the latter, and 2^-80 of the neighbours' mu. */
 static void leave_exactly(batch *w, sums *total, mask active)
 {

@@ -35,7 +35,7 @@ struct loewner {
         uint64_t xstar[2], frame[2][2], k[SLOTS][2], phase[SLOTS];
     } turns;
     int coarse;                         /* 2^coarse is at least the size of any wave */
-    double err_pull;                    /* of p sin, relative: see leave_exactly */
+    double err_pull;                    /* of what leave_exactly computes, over (1 + S) weights */
     int usable;                         /* do all these numbers fit, and is there a wave? */
     int identity;                       /* is the frame the identity? */
     int length, given[SLOTS];           /* |q|^2 of straighten, or 1; of the patch's waves */
