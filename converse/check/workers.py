@@ -44,7 +44,8 @@ class Problems:
 
         beta >= 2 cos t = 2 - bent for bent <= 4.  v[j] = cos((j - (N + 1)/2) t) is positive for
         0 <= j <= N + 1 if (N + 1) t < pi, and v[0]/v[1] falls with N.  2 |n[j]| |n[j+1]| is at most
-        |n[j]|^2 v[j+1]/v[j] + |n[j+1]|^2 v[j]/v[j+1].  So the left side of (C3) is at least (v[0]/v[1] - l) (|n[1]|^2 + |n[N]|^2).
+        |n[j]|^2 v[j+1]/v[j] + |n[j+1]|^2 v[j]/v[j+1].  So the left side of (C3) is
+        at least (v[0]/v[1] - l) (|n[1]|^2 + |n[N]|^2).
         """
         (n, cell), criterion = leaf, self.criterion(leaf[0])
         if n not in self.bent:

@@ -2,11 +2,11 @@
    18, 1971), lane by lane.
 
    sum2_of_sum and sum2_of_product are exact unless something overflows, and then NaN or infinite,
-   or lost below 2^-1000.  u = 2^-53, and of each operand |low| <= u |high|, as of all results.  Then
-   sum2_plus and sum2_times lose 8 u^2 of the absolute values of what they add and of the product,
-   and 17 u^2 if |low| <= 3 u |high| for one of them.  sum2_over loses 16 u^2 of the quotient: the
-   difference of the high parts is exact, and at most u of a.  With the low parts it is rounded three
-   times. */
+   or lost below 2^-1000.  u = 2^-53, and each operand has |low| <= u |high|, as all results have.
+   Then sum2_plus and sum2_times lose 8 u^2 of the absolute values of what they add and of the
+   product, and 17 u^2 if |low| <= 3 u |high| for one of them.  sum2_over loses 16 u^2 of the
+   quotient: the difference of the high parts is exact, and at most u of a.  With the low parts it
+   is rounded three times. */
 #ifndef CONVERSE_SUM2_H
 #define CONVERSE_SUM2_H
 

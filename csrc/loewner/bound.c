@@ -298,8 +298,8 @@ INLINE sum2 exact_pull(const batch *w, const point *q, int wave)
 
    So instead of roundings of g and beta that are added up over the orbit by their absolute values
    there are those of mu, with signs.  All roundings, at most 200 operations on sums of two between
-   any number and the result, are 2^-95 of the absolute values.  `left` has 2^-90 of these and of S times the weights, or with
-   phases 2^-60 of the latter, and 2^-80 of the neighbours' mu. */
+   any number and the result, are 2^-95 of the absolute values.  `left` has 2^-90 of these and of S
+   times the weights, or with phases 2^-60 of the latter, and 2^-80 of the neighbours' mu. */
 static void leave_exactly(batch *w, sums *total, mask active)
 {
     const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
