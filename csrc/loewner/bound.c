@@ -85,8 +85,8 @@ static size_t used_of(const batch *w)
     return offsetof(sums, along) / sizeof(vec) + (size_t)waves_of(w);
 }
 
-/* Sites are summed in blocks of so many, and then the blocks.  What the sum of the blocks loses is
-   summed apart: so the roundings of a sum grow with BLOCK, and not with the number of sites. */
+/* Sites are summed in blocks of so many, and then the blocks.  The roundings of the second sum are
+   summed separately, so the error of a sum grows with BLOCK, and not with the number of sites. */
 enum { BLOCK = 16 };
 
 /* Adds the vectors of a block's sums to the total, and begins the block anew. */
@@ -453,9 +453,8 @@ static vec summit(const batch *w, int with_cubic)
    sums make 45 additions.  So all is off by (22 n + 74) u of the mass, where `each` has 32 n + 128.
    Positive sums are off by (22 n + 34) u of themselves, which `each` also covers.  In leave_exactly
    the sites ORIGIN and ORIGIN + 1 end no block; a block has 2 n sites at most, of 2 additions each,
-   which are fewer than 22 n.  (2) leaves at most
-   (10 + N') u (1 + S) of the weights, N' waves, and 2 u of the neighbours' mu; `left` has
-   4 (14 + N')(1 + S) and 8. */
+   which are fewer than 22 n.  (2) leaves at most (13 + N') u (1 + S) of the weights, N' waves, and
+   2 u of the neighbours' mu; `left` has 4 (14 + N')(1 + S) and 8. */
 static void bound_with(batch *w, mask active, int signs)
 {
     const int columns = w->problem->columns;
