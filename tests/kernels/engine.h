@@ -141,7 +141,49 @@ static void sincos_of(uint64_t turns, int64_t *sine, int64_t *cosine, double y[]
     y[3] = at(&fine.low, LANES - 1);
 }
 
+/* exact_pull of the last wave at a point of these numbers. */
+static void pull_of(void *work, const loewner *problem, uint64_t turns, const double n_mu[4],
+                    double y[4])
+{
+    static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
+    batch *const w = work;
+    const int last = problem->waves - 1;
+    loewner_cell c;
+    point q;
+
+    memset(&q, 0, sizeof q);
+    w->problem = problem;
+    loewner_prism(problem, &whole, &c);
+    for (int k = 0; k < LANES; k++)
+        set_lane(w, k, &c);
+    q.x[0] = turns - none();
+    for (int i = 0; i < 2; i++) {
+        q.n[i] = every(n_mu[i]);
+        q.mu[i] = every(n_mu[2 + i]);
+    }
+    const sum2 pull = exact_pull(w, &q, last);
+    y[0] = at(&pull.high, LANES - 1);
+    y[1] = at(&pull.low, LANES - 1);
+    y[2] = at(&w->p[last], LANES - 1);
+    y[3] = at(&w->p_low[last], LANES - 1);
+}
+
+/* n times x, summed as over n sites. */
+static double sum_of(int n, double x)
+{
+    vec total = every(0.0), lost = every(0.0), block = every(0.0);
+
+    for (int j = 0; j < n; j++) {
+        block += every(x);
+        if (j % BLOCK == 0)
+            add_block(&total, &lost, &block, 1);
+    }
+    end_blocks(&total, &lost, &block, 1);
+    return at(&total, LANES - 1);
+}
+
 #define HOOKS_OF(engine) hooks_##engine
 #define HOOKS(engine) HOOKS_OF(engine)
-const hooks HOOKS(ENGINE) = { poison, follow_root, bound_root, look_root, sincos_of };
+const hooks
+    HOOKS(ENGINE) = { poison, follow_root, bound_root, look_root, sincos_of, pull_of, sum_of };
 #endif

@@ -31,6 +31,13 @@ typedef struct {
     /* turns_sincos: sine and cosine in 2^-62; the double next to the sine, and what that lacks; and
        fine_sine, high and low. */
     void (*sincos)(uint64_t turns, int64_t *sine, int64_t *cosine, double y[]);
+
+    /* exact_pull of the last wave at an angle of x0, with n and mu: high, low, p and p_low. */
+    void (*pull)(void *work, const loewner *problem, uint64_t turns, const double n_mu[4],
+                 double y[4]);
+
+    /* n times x, in the blocks of bound.c. */
+    double (*sum)(int n, double x);
 } hooks;
 
 #ifdef __x86_64__

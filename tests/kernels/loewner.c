@@ -254,6 +254,21 @@ static int k_sincos(const request *r, double y[])
     return 1;
 }
 
+/* Upper and lower half of x0, n, mu -> high, low, p, p_low of the last wave. */
+static int k_pull(const request *r, double y[])
+{
+    const uint64_t turns = (uint64_t)r->more[0] << 32 | (uint64_t)r->more[1];
+
+    hooks_of(r->w)->pull(r->w->work, r->w, turns, r->more + 2, y);
+    return 1;
+}
+
+static int k_sum(const request *r, double y[])          /* n, x */
+{
+    y[0] = hooks_of(r->w)->sum((int)r->more[0], r->more[1]);
+    return 1;
+}
+
 static int k_largest(const request *r, double y[])      /* B */
 {
     y[0] = loewner_largest(r->w);
@@ -280,6 +295,8 @@ static const row kernels[] = {
     { "waves_sites", 2, ANY_SITE * ANY_SHOWN, 1, 0, SITES, SITES, k_sites },
     { "waves_cell", 10, 18, 1, 0, 0x1p60, 0x1p60, k_shifted },
     { "loewner_sincos", 2, 8, 0, 0, 0x1p33, 0x1p33, k_sincos },
+    { "loewner_pull", 6, 4, 0, 0, 0x1p33, 0x1p33, k_pull },
+    { "loewner_sum", 2, 1, 0, 0, 0x1p33, 0x1p33, k_sum },
     { "waves_largest", 0, 1, 1, 1, SITES, SITES, k_largest },
 };
 

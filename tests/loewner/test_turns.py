@@ -48,6 +48,34 @@ def test_sines(lanes, monkeypatch):
     assert mp(2) ** -106 < finest < mp(2) ** -100, finest
 
 
+@pytest.mark.parametrize("lanes", ["2", "4", "8"])
+def test_what_a_wave_leaves_has_twice_the_digits(lanes, monkeypatch):
+    """Within the 2^-95 of bound.c, also where k.n and k.mu cancel."""
+    monkeypatch.setenv("CONVERSE_LANES", lanes)
+    rng, worst = rng_for("pull"), 0
+    prism = [Fraction(x) for x in ("0.1", "0.2", "0.7", *[0] * 10)]
+    for turns in [*angles(rng_for("turns"))][::5]:
+        n, mu = ([rng.uniform(-1, 1) * 10 ** rng.uniform(0, 8)] * 2 for _ in range(2))
+        for x in n, mu:
+            x[1] *= -1 - rng.choice([0, 1, 1e-9]) * rng.random()
+        high, low, p, p_low = map(mp, kernels.call(
+            "loewner_pull", [*prism, turns >> 32, turns & 0xffffffff, *map(Fraction, n + mu)],
+            4, 20))
+        y, (n0, n1, m0, m1) = 2 * mpmath.pi * mp(turns) / 2 ** 64, map(mp, n + mu)
+        true = (p + p_low) * ((m0 + m1) * mpmath.sin(y) + (n0 + n1) ** 2 * mpmath.cos(y))
+        weights = 4 * (n0 ** 2 + n1 ** 2) + 2 * (abs(m0) + abs(m1))
+        worst = max(worst, abs(high + low - true) / (p * weights))
+    assert mp(2) ** -112 < worst < mp(2) ** -95, worst
+
+
+@pytest.mark.parametrize("x", [0.1, 1 / 3])
+def test_long_sums_lose_as_little_as_short_ones(x):
+    """32 u of a block of 16 sites, and not 8,000 roundings of the sum of the blocks."""
+    prism = [Fraction(x) for x in (1, 0, 0, *[0] * 10)]
+    found, = kernels.call("loewner_sum", [*prism, 1 << 17, Fraction(x)], 1, 20)
+    assert abs(found - Fraction(x) * 2 ** 17) <= 32 * Fraction(1, 2 ** 53) * found
+
+
 @pytest.mark.parametrize("k, longest", [("0.9716", 4000), ("0.9", 4000), ("0.9719", 0), ("2", 0)])
 def test_orbits_are_long_only_where_that_helps(k, longest):
     """Where a circle exists, thin prisms close to it are not proved."""
