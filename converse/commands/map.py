@@ -21,7 +21,7 @@ ENDING = ending(
     "converse-check ab.json",
     "converse-check  verifies the map independently\n"
     "converse        proves one patch of parameters, of any potential\n"
-    "converse-tori   proves tori, as --tori does", (
+    "converse-tori   proves tori, and writes the certificates of --tori", (
         (0, "all is proved that was asked for"), (1, "some of it is not"),
         (2, "bad usage, map or file"), (SIGNALS[0], SIGNALS[1] + ", the map saved")))
 
@@ -48,8 +48,8 @@ def parser():
     p.add_argument("-r", "--restore", action="store_true", help=(
         "continue MAP in its plane; --down-to may have another value"))
     p.add_argument("-g", "--graphics", metavar="FILE", help="draw the map: SVG, PNG or PDF by name")
-    p.add_argument("--tori", metavar="DIRECTORY", help="list the points at which DIRECTORY has "
-                   "certificates of tori; with -g, draw them")
+    p.add_argument("--tori", metavar="DIRECTORY", help="count the certificates of tori in "
+                   "DIRECTORY, of points of the plane; with -g, draw these points")
     add_worker_options(p, "cells")
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
@@ -79,13 +79,13 @@ def run(options):
                 options.plane, options.down_to, path=options.map, resume=options.restore,
                 jobs=options.jobs, executor=executor, time_limit=options.time_limit,
                 progress=lambda *done: line(lambda: progress_text(*done)))
-    say(found.report())
+    say(found.report(options.map))
     points = []
     if options.tori is not None:
         from ..parameters.tori import proved_points
 
-        points = [point for point, _ in proved_points(options.tori)]
-        say("Tori : %d proved, with a certificate each in %s\n" % (
+        points = [point for point, _ in proved_points(options.tori) if found.in_plane(point)]
+        say("Tori : %d of the plane, with certificates in %s that converse-check verifies\n" % (
             len(points), plain(options.tori)))
     if options.graphics is not None:
         from ..draw import map_figure

@@ -1,7 +1,9 @@
 """The command: converse-portrait [INPUT] [-b FILE] [-g FILE]."""
 
 import sys
+from fractions import Fraction
 
+from ..model.exact import rounded_text
 from ..storage.files import ConverseError
 from ..version import __version__
 from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
@@ -74,7 +76,7 @@ def run(options):
                         resume=options.restore is not None, jobs=options.jobs,
                         executor=executor, time_limit=options.time_limit,
                         progress=lambda *done: line(lambda: progress_text(*done)))
-    say(found.report())
+    say(found.report(path))
     if options.graphics is not None:
         from ..draw import portrait_figure
         tori = _tori(rotations, found.problem)
@@ -103,7 +105,8 @@ def _tori(rotations, problem):
     for rotation in rotations:
         try:
             proved.append(tori.prove(problem, rotation))
-            words = "proved, within %.0e" % proved[-1].distance
+            words = "proved, its angles within %s of its Fourier series" % rounded_text(
+                Fraction(proved[-1].distance), 2, up=True)
         except (tori.NotFound, tori.NotProved) as error:
             words = str(error)
         say("Circle of rotation number %s : %s\n" % (rotation, words))

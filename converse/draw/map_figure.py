@@ -74,7 +74,7 @@ def _fill(region_map, axes, tori):
               label="B = 10/3, where no orbit is needed")
     axes.plot(*_around(estimate).T, color=plot.VERMILLION, linewidth=1.6,
               label="estimate: single points proved to here")
-    if tori:
+    if tori := list(filter(region_map.in_plane, tori)):
         places = np.array(sorted((float(p[horizontal]), float(p[vertical])) for p in tori))
         axes.plot(*places.T, "o", color=plot.GREEN, markersize=3.5,
                   label="a torus is proved there")

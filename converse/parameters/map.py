@@ -9,7 +9,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple
 from ..model.exact import decimal_text, exact
 from ..storage import files
 from ..storage.files import ConverseError, Path
-from ..storage.kept import Kept
+from ..storage.kept import Kept, verify_text
 from ..version import __version__
 from .region import RADIUS, REGIONS, Cell, root
 
@@ -144,6 +144,17 @@ class ParameterMap(Kept):
         """
         return sum(leaf.kind == kind for leaf in self.leaves())
 
+    def in_plane(self, point: Tuple[Fraction, Fraction, Fraction]) -> bool:
+        """Does a point lie in the plane of the region?
+
+        Parameters
+        ----------
+        point
+            Its (a, b, c), of any sign.
+        """
+        a, b, c = point
+        return {"b=0": b == 0, "a=b": a == b, "c=0": c == 0}[self.region]
+
     # ---- the estimate
 
     @staticmethod
@@ -240,23 +251,31 @@ class ParameterMap(Kept):
         return max(leaf.cell.high[0] for leaf in self.leaves()
                    if leaf.kind == OPEN and leaf.cell.face == face)
 
-    def report(self) -> str:
-        """The theorem and the counts of the map, in lines."""
+    def report(self, file: Optional[Path] = None) -> str:
+        """The theorem and the counts of the map, in lines.
+
+        Parameters
+        ----------
+        file
+            The name of the map's file, for the line that says how to verify it.
+        """
         proofs = [leaf.proof["tree"] for leaf in self.leaves() if leaf.proof is not None]
         lines = ["THEOREM.  The map  y' = y + J',  J' = J - grad V(y),  y modulo 2 pi,",
                  "with  V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1),",
                  "has no invariant torus J = P + S'(y) over both angles, P constant, S periodic "
                  "and C1,",
-                 "for (a, b, c) = r d in the proved cells, nor for their images by changes of "
-                 "signs", "and by exchange of a and b (converse-check names these).",
-                 "Region : " + self.region] if self.count(PROVED) or self.count(AT_ONCE) else [
-                     "UNDECIDED: nothing is proved.", "Region : " + self.region]
+                 "for (a, b, c) = r d in the proved cells, for larger multiples of those in cells "
+                 "with B > 10/3,", "and for the images of all these by changes of the signs of "
+                 "a, b, c and by the exchange of a and b.",
+                 *["Verify : " + verify_text(file, "map")] * bool(file)] if self.count(
+                     PROVED) or self.count(AT_ONCE) else ["UNDECIDED: nothing is proved."]
+        lines += ["Region : " + self.region]
         for face, directions in enumerate(self.directions):
             height = self.height(face)
             lines += ["d = %s, 0 <= s <= 1 : %s" % (
                 " + s ".join("(%s)" % ", ".join(map(str, d)) for d in directions),
-                "all r >= %s" % decimal_text(height) if height < RADIUS else
-                "not all directions at any r")]
+                "proved for all r >= %s" % decimal_text(height) if height < RADIUS else
+                "open in some direction up to r = %s" % RADIUS)]
         lines += ["Cells : %d proved, %d proved with all larger multiples (B > 10/3), %d open" % (
                       len(proofs), self.count(AT_ONCE), self.count(OPEN)),
                   "Prisms : %d proved" % sum(tree.count("P") for tree in proofs),
@@ -280,7 +299,8 @@ class ParameterMap(Kept):
             Axes of matplotlib, which are drawn into and returned.  With None a Figure is returned,
             which a notebook shows.
         tori
-            The (a, b, c) of proved tori (parameters.tori.proved_points).
+            The (a, b, c) of proved tori (parameters.tori.proved_points); those that lie in the
+            plane are drawn.
 
         Raises
         ------

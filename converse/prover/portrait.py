@@ -22,7 +22,7 @@ from ..model.region import MARGIN, PLACES, reversal_centre
 from ..model.statement import conditions, ended, indented, map_lines
 from ..storage.backup import Backup
 from ..storage.files import ConverseError, Path
-from ..storage.kept import Kept, sealed, unsealed
+from ..storage.kept import Kept, sealed, unsealed, verify_text
 from ..storage.signals import interruptible
 from ..version import __version__
 from . import native, tree
@@ -195,23 +195,32 @@ class Portrait(Kept):
         """Are all columns done that were asked for?"""
         return len(self.found) == len(self.stars)
 
-    def report(self) -> str:
-        """What is proved, in words."""
+    def report(self, file: Optional[Path] = None) -> str:
+        """What is proved, in words.
+
+        Parameters
+        ----------
+        file
+            The name of the portrait's file, if there is one.
+        """
         shares = [self.share(x) for x in self.found]
         of = "phase space" if self.strip else "the successors in them, on average"
         proved = any("P" in region.tree for each in self.found.values() for region in each)
         claim = ["has no rotational invariant circle through the points (y, y' - y) of these "
-                 "prisms that lie in no undecided prism"] if proved else ["was examined"]
+                 "prisms that lie in no undecided prism, nor through the images of such points by "
+                 "the reversal of time"] if proved else ["was examined"]
         lines = ["THEOREM, for the proved prisms" if proved else "UNDECIDED: nothing is proved.",
                  *map_lines(self.problem),
                  *ended([*indented([*claim, *conditions(self.problem)])]), ""]
+        lines += ["Verify : " + verify_text(file, "portrait")] if proved else []
         lines += ["Columns : %d of %d%s%s" % (
             len(self.found), len(self.stars), "" if self.even is None else
             ", and their mirror images about %s pi" % self.even,
             ", strips %s wide" % decimal_text(2 * self.strip) if self.strip else ", lines"),
-            "Undecided : %s of %s" % (decimal_text(self.undecided), of)]
+            "Undecided : at most %s of %s" % (decimal_text(self.undecided), of)]
         if shares:
-            lines += ["Undecided in a column : from %.4f to %.4f" % (min(shares), max(shares))]
+            lines += ["Undecided in a column : at most %s to %s" % tuple(
+                decimal_text(rounded(x, 4, up=True), 4) for x in (min(shares), max(shares)))]
         if not proved:
             lines += ["To try : " + ("a depth above %d (--depth)" % self.depth if shares else
                                      "more time, from a file (-b FILE, then -r FILE)")]

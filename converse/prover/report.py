@@ -11,6 +11,7 @@ from ..model.problem import IDENTITY, frame_text
 from ..model.region import folds
 from ..model.statement import (TORUS, conditions, ended, indented, labelled, map_lines, one_angle,
                                parameters, whole)
+from ..storage.kept import verify_text
 from . import report_1989, tree
 from .report_1989 import deeper, quoted
 from .settings import REGION, THEOREM
@@ -110,8 +111,7 @@ def _grounds(proof, file):
     """(label, text) of each further line."""
     problem, counts = proof.problem, proof.counts
     if proof.conclusion in (THEOREM, REGION):
-        yield "Verify", "converse-check " + file if file else \
-            "with -b FILE the proof is kept; converse-check FILE verifies it"
+        yield "Verify", verify_text(file, "proof")
     for label, comment in zip(["Input"] + [""] * len(problem.comments), problem.comments):
         yield label, quoted(comment)
     if problem.map.dimension == 1 and proof.all_decided:

@@ -1,7 +1,9 @@
 """Results that have a file: proofs, portraits, maps of parameter space, tori."""
 
+import os
 import re
-from typing import TYPE_CHECKING, List, Tuple, Type, TypeVar
+import shlex
+from typing import TYPE_CHECKING, List, Optional, Tuple, Type, TypeVar
 
 from . import files
 from .files import ConverseError, Path
@@ -76,6 +78,12 @@ class Kept:
             The theorem is not verified; the text says why.
         """
         return files.verified(self, jobs)
+
+
+def verify_text(file: Optional[Path], what: str) -> str:
+    """How to verify the file of a theorem, or how to get one: the line Verify of reports."""
+    return "converse-check " + shlex.quote(files.plain(os.fspath(file))) if file else \
+        "with -b FILE the %s is kept; converse-check FILE verifies it" % what
 
 
 # ---- files that end with their checksum

@@ -206,8 +206,8 @@ class Way:
             "at %s, on a grid of %d points" % (
                 "vector" if self.potential.dimension > 1 else "number", at, last.mesh.points)
         if more := too_large or end >= 1 and last.mesh.points >= self.points >> 2:
-            text += "; farther on it needs more than the %d points that are allowed (--points)" \
-                % self.points
+            text += "; farther on it needs more than the %d points that are allowed " \
+                "(converse-tori --points)" % self.points
         if guess and end < (1 if more else 2):
             text += "; the rate at which its coefficients decay would be 0 near %s" % guess
         return NotFound(text, last.part, [float(p) for p in self.amplitude(last.part)])

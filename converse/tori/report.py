@@ -10,6 +10,7 @@ from ..model.map import from_patch
 from ..model.problem import Problem
 from ..model.statement import TORUS, conditions, ended, indented, labelled, map_lines, parameters
 from ..storage.files import plain
+from ..storage.kept import verify_text
 from ..version import __version__
 from .find import NotFound
 from .proved import NotProved, Piece, ProvedTorus
@@ -111,8 +112,7 @@ def _omega(rotation: Rotation) -> str:
 def _grounds(proof: ProvedTorus, worst: Piece,
              certificate: Optional[str]) -> Iterator[Tuple[str, str]]:
     """(label, text) of what the theorem rests on."""
-    yield "Verify", "converse-check " + plain(certificate) if certificate else \
-        "with -b FILE the certificate is kept; converse-check FILE verifies it"
+    yield "Verify", verify_text(certificate, "certificate")
     yield from _rotation_lines(proof.rotation)
     yield "Distance", "|u - u0| <= %s, u0 the Fourier series of the certificate" % _up(
         max(piece.distance for piece in proof.pieces))

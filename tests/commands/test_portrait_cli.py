@@ -1,5 +1,7 @@
 """The command converse-portrait: its file, its figure, and one line for whatever is wrong."""
 
+import re
+
 import pytest
 
 from converse import check
@@ -35,12 +37,15 @@ def test_portrait_is_kept_continued_and_drawn(run, inputs, tmp_path):
     status, out, err = run(inputs["range"], "--columns", 30, "--depth", 9, "-b", path,
                            "--time-limit", 0)
     assert (status, err) == (1, "") and "Columns : 0 of 15" in out
+    assert "Verify" not in out
     status, out, err = run("-r", path, "-g", picture, "--rotation", "golden",
                            "--rotation", "t^2+t-1: t/40")
     assert (status, err) == (1, "") and "Columns : 15 of 15" in out
+    assert "\nVerify : converse-check %s\n" % path in out
     assert ": no torus of this rotation number" in out
     assert "for every t[1] in [-1, 1]" in out and check.verify(path)
-    assert "rotation number golden : proved" in out and picture.read_bytes()[:4] == b"\x89PNG"
+    assert re.search("number golden : proved, its angles within [1-9][.][0-9]e-[0-9]+ of", out)
+    assert picture.read_bytes()[:4] == b"\x89PNG"
     before = path.read_bytes()
     assert run("-r", path)[0] == 0 and path.read_bytes() == before
 
@@ -69,10 +74,15 @@ def test_bad_usage_is_one_line(run, inputs, tmp_path, monkeypatch, name, argumen
     assert (tmp_path / "there").read_text() == "something else\n"
 
 
+def test_without_a_file_the_report_tells_how_to_get_one(run, inputs):
+    out = run(inputs["standard"], "--columns", 30, "--depth", 4)[1]
+    assert "\nVerify : with -b FILE the portrait is kept; converse-check FILE verifies it\n" in out
+
+
 def test_depth_that_proves_nothing_is_told(run, inputs):
     status, out, err = run(inputs["standard"], "--columns", 30, "--depth", 1, "--lines")
     assert (status, err) == (1, "")
-    assert "Undecided : 1 of" in out and "To try : a depth above 1 (--depth)" in out
+    assert "Undecided : at most 1 of" in out and "To try : a depth above 1 (--depth)" in out
     status, out, err = run(inputs["standard"], "--time-limit", 0)
     assert (status, err) == (1, "") and out.startswith("UNDECIDED") and "To try : more time" in out
 

@@ -8,6 +8,7 @@ import vectors
 
 from converse import check
 from converse.commands import map as cli
+from converse.draw import map_figure
 from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
 from converse.parameters.map import ParameterMap
@@ -102,5 +103,21 @@ def test_the_command_draws_them(few, tmp_path, capsys):
     path, picture = tmp_path / "ab.json", tmp_path / "ab.svg"
     found.save(path)
     assert cli.main(["--tori", str(directory), "-g", str(picture), str(path)]) == 1
-    assert "Tori : 3 proved" in capsys.readouterr().out
+    assert "\nTori : 3 of the plane, with certificates in %s that converse-check verifies\n" \
+        % directory in capsys.readouterr().out
     assert "a torus is proved" in picture.read_text()
+
+
+def test_tori_of_another_plane_are_left_out(few, tmp_path, capsys):
+    """The tori lie in a = b: one has c = 0 as well, one b = 0, and the third has neither."""
+    path, picture = tmp_path / "c.json", tmp_path / "c.svg"
+    for region, count in (("c=0", 1), ("b=0", 1), ("a=b", 3)):
+        found = ParameterMap.new(region, F(21, 20))
+        found.save(path)
+        assert cli.main(["--tori", str(few[1]), str(path)]) == 1
+        assert "\nTori : %d of" % count in capsys.readouterr().out
+    found = ParameterMap.new("c=0", F(21, 20))
+    found.estimate[0].update(dict.fromkeys(found.places(), 0.1))
+    for points, drawn in (([(F(1), F(1), F(1))], False), ([(F(1), F(1), F(0))], True)):
+        map_figure.draw(found, picture, points)
+        assert ("a torus is proved" in picture.read_text()) == drawn

@@ -399,7 +399,10 @@ def test_an_input_is_no_map(root, capsys, name):
 def test_the_report(made, capsys):
     assert cli.main([str(made[1])]) == 0
     out = capsys.readouterr().out
-    assert out == ParameterMap.load(made[1]).report()
+    assert out == ParameterMap.load(made[1]).report(made[1])
+    assert "\nVerify : converse-check %s\n" % made[1] in out
+    nothing = ParameterMap.new("b=0", F(2)).report(made[1])
+    assert "Verify" not in nothing and nothing.count("open in some direction up to r = 2") == 2
     assert "all r >= " in out and "SHA-256 : " + made[0].sha256 in out
     assert {"Cells", "Prisms", "Reached"} <= labels(out) and labels(out) <= explained()
 

@@ -58,7 +58,7 @@ RUNS = {
                 {"Residue", "Pass", "Flux"}),
                (orbits_cli, "find $/standard-k090.in 3,0/8 1", PROVED, {"Map", "Potential"})],
     "a portrait": [(portrait_cli, "$/standard-k090.in --columns 8 --depth 6 -b x.portrait", PARTLY,
-                    {"Columns", "Undecided in a column"}),
+                    {"Verify", "Columns", "Undecided in a column"}),
                    (check, "x.portrait", PROVED, {"Area without circles"})],
 }
 

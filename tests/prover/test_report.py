@@ -62,6 +62,8 @@ def test_the_sharper_method_in_its_own_words(made_up):
     assert "image" not in text and " < " not in text and "tries without" not in text
     assert "Verify     converse-check a.proof\n" in verdict(
         made_up("P", method="loewner"), "a.proof")
+    assert "Verify     converse-check 'a b.proof'\n" in verdict(
+        made_up("P", method="loewner"), "a b.proof")
 
 
 def test_header_without_comments(made_up):
