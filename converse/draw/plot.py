@@ -28,7 +28,7 @@ RASTER = 2000                           # with more prisms than this the depth o
 PIXELS = 1200
 DPI = 200                               # of a file: PostScript of a raster has 5 MB
 SINGLE = Fraction(1, 10 ** 200)         # half-widths below are drawn as 0: matplotlib fails on them
-DEPTHS, SHADE = ("#9ecae1", "#4292c6", "#08306b"), "#4292c6"    # of the cuts; one for the legend
+DEPTHS = "#9ecae1", "#4292c6", "#08306b"   # of the cuts
 RASTER_COLOURS = {"S": (217, 217, 217, 255), "a": (230, 159, 0, 255),
                   "?": (255, 255, 255, 255), "U": (213, 94, 0, 255)}
 LETTERS = 17                            # of a caption, in an inch
@@ -146,11 +146,13 @@ def page(proof, caption=True):
         axes.annotate(foot, (0.5, 1), (0, 5), "axes fraction", "offset points", fontsize=8,
                       ha="center", va="bottom")
         axes.set_title(head, fontsize=9, pad=10 + 10.5 * len(captions.foot(proof)))
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=5, ncol=3, fontsize=8,
-                frameon=False)          # below the labels of the axes
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=5, ncol=3,
+                    fontsize=8, frameon=False)          # below the labels of the axes
     for image in axes.images[:1]:
         fig.colorbar(image, ax=axes, shrink=0.6, ticks=MaxNLocator(integer=True),
-                     label="cuts of the smallest prism along both angles")
+                     label="proved (%d): cuts of the smallest prism along both angles"
+                     % captions.counts(proof).get("P", 0))
     return fig
 
 
@@ -165,8 +167,8 @@ def draw(proof, axes):
     else:
         _raster(axes, captions.nodes(proof), (left, left + width, bottom, bottom + height))
         paths = {}
-        colours = {"P": SHADE, **{kind: [x / 255 for x in colour]
-                                  for kind, colour in RASTER_COLOURS.items()}}
+        colours = {kind: [x / 255 for x in colour] for kind, colour in RASTER_COLOURS.items()}
+        count.pop("P", None)            # whose colours a colour bar explains
     for kind, number in count.items():
         rectangles(axes, [(left + width * x, bottom + height * y) for x, y in paths.get(kind, ())],
                facecolor=colours[kind], edgecolor=EDGES[kind], linewidth=WIDTHS.get(kind, 0.3),

@@ -222,6 +222,16 @@ def test_what_is_said(made_up):
         assert not any(word in text for word in unsaid), (unsaid, text)
 
 
+def test_the_colour_bar_counts_the_proved(made_up, monkeypatch):
+    """The legend of a raster has the other kinds, or is absent."""
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr(plot, "RASTER", 0)
+    axes, bar = made_up("01PS1U").plot().axes
+    assert bar.get_ylabel().startswith("proved (1):")
+    assert not any("proved" in text.get_text() for text in axes.get_legend().get_texts())
+    assert made_up("P", **ELSEWHERE).plot().axes[0].get_legend() is None
+
+
 def test_parameters_that_move_together(made_up):
     """The segment is no box; and the numbers of both are exact."""
     proof = made_up("P", a=LONG, method="loewner")
