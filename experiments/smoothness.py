@@ -85,53 +85,27 @@ def measure(kind, eps, digits):
 # ---- drawing
 
 def draw(measured):
-    """The figure, as the bytes of an SVG file."""
+    """The figure, as the bytes of an SVG file; each line goes through an orbit's steepest pair."""
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    with style.context(["default", plot.STYLE]):
-        figure = Figure(figsize=(7.2, 3.3))
-        all_of_them, crossing = figure.subplots(1, 2)
-        figure.subplots_adjust(wspace=0.35)
-        draw_all(all_of_them, measured)
-        draw_one(crossing, *measured[2])
+    with style.context(["default", plot.CHART]):
+        figure = Figure(figsize=(6, 3.8))
+        axes = figure.subplots()
+        for (state, _, _, distance, momentum), colour, words, at in (
+                (measured[0], "0.45", "a smooth surface", (1.6e-2, 1.2e-5)),
+                (measured[2], plot.BLUE, "filaments", (6e-5, 2.5e-4))):
+            x, p = max(zip(distance, momentum), key=lambda pair: pair[1] / pair[0])
+            axes.axline((x, p), (2 * x, 2 * p), color=colour, zorder=1)
+            axes.plot(distance, momentum, ".", markersize=2.5, color=colour, rasterized=True)
+            axes.plot(x, p, "o", color=colour)
+            axes.annotate(r"$|\Delta p| = %.3g\,|\Delta x|$" % (p / x), (x, p), (6, -6),
+                          textcoords="offset points", color=colour, va="top")
+            axes.text(*at, "%s,\nε = %g" % (words, state.eps), color=colour, ha="center")
+        axes.set(xscale="log", yscale="log", xlim=(1e-7, 0.5), ylim=(3e-6, 1e-2),
+                 xlabel=r"$|\Delta x|$ of two points (turns)", ylabel=r"$|\Delta p|$ (turns)",
+                 title="Points of filaments come together in the angles, not in the momenta")
         return plot.encode(figure, "svg", dpi=150)
-
-
-def draw_all(axes, measured):
-    for (state, _, _, distance, momentum), colour in zip(
-            measured, (plot.GREY, plot.ORANGE, plot.DARK, plot.BLUE, plot.VERMILLION)):
-        axes.plot(distance, momentum / distance, ".", markersize=1.5, color=colour, rasterized=True,
-                  label="q = %d, ε = %g" % (state.q, state.eps))
-    star(axes, *measured[2][3:], ratio=True)
-    axes.set(xscale="log", yscale="log", ylim=(1e-3, 1e6), xlabel=r"$|\Delta x|$",
-             ylabel=r"$L = |\Delta p|\,/\,|\Delta x|$", title="closest pairs can be steep")
-    axes.legend(markerscale=4, loc="upper left", labelspacing=0.2)
-
-
-def star(axes, distance, momentum, ratio):
-    """Marks the steepest pair, in the colour of its orbit in the left panel."""
-    at = np.argmax(momentum / distance)
-    y = (momentum / distance if ratio else momentum)[at]
-    axes.plot(distance[at], y, "*", color=plot.DARK, markersize=10)
-    axes.annotate("L = %.0f" % (momentum[at] / distance[at]), (distance[at], y), (8, 0),
-                  textcoords="offset points", va="center", color=plot.DARK)
-
-
-def draw_one(axes, state, i, j, distance, momentum):
-    """Pairs equally far apart along the orbit, on the same two filaments, that is."""
-    apart = np.minimum(abs(i - j), state.q - abs(i - j))
-    steep = np.argsort(-momentum / distance)[:200]
-    axes.plot(distance, momentum, ".", markersize=1.5, color="0.75", rasterized=True)
-    chosen = [d for d, _ in Counter(apart[steep].tolist()).most_common(5)]
-    for d, colour in zip(sorted(chosen), (
-            plot.BLUE, plot.ORANGE, plot.GREEN, plot.VERMILLION, plot.PURPLE)):
-        of = apart == d
-        axes.plot(distance[of], momentum[of], ".", markersize=2.5, color=colour, label="%d" % d)
-    star(axes, distance, momentum, ratio=False)
-    axes.set(xscale="log", yscale="log", xlabel=r"$|\Delta x|$", ylabel=r"$|\Delta p|$",
-             title=r"levels of $|\Delta p|$: q = %d, ε = %g" % (state.q, state.eps))
-    axes.legend(title="pairs with $|i - j|$ =", loc="lower left", markerscale=2, labelspacing=0.2)
 
 
 def main(arguments=None):
