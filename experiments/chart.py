@@ -26,7 +26,6 @@ import sides
 import converse
 from converse.commands.common import Parser, ended
 from converse.draw import plot
-from converse.draw.plot import BLUE, DARK, ORANGE
 from converse.model.map import LINE
 from converse.model.problem import Problem
 from converse.storage import files
@@ -68,8 +67,8 @@ SUCCESSOR = ("4.9578", "0.0982"), ("0.003", "0.006")
 POINTS = (2, 3, 4)                      # of the orbit, x* being number 0
 SAMPLES = 2000
 
-COLOURS = {"1989": DARK, "thesis": BLUE, "loewner": ORANGE}
-SMALL = {"textcoords": "offset points", "fontsize": 8, "color": "0.3"}
+METHODS = {"thesis": ("the thesis's method", plot.DARK),
+           "loewner": ("the sharper method", plot.BLUE)}
 
 
 # ---- measuring: each function yields the rows of a table
@@ -258,54 +257,45 @@ def draw_bound(figure, rows):
 
 def draw_width(figure, rows):
     axes = figure.subplots()
-    rows = [(*row[:4], 100 * max(row[4] - 1, 1e-5)) for row in rows]
-    for n in POINTS:
-        mine = [row for row in rows if row[2] == n and row[0] != "Taylor model"]
-        axes.plot([row[3] for row in mine], [row[4] for row in mine], color="0.75", linewidth=0.8)
-    for form, marker, colour in (("fixed form", "o", COLOURS["1989"]),
-                                 ("column rotor", "s", COLOURS["thesis"]),
-                                 ("Taylor model", "^", COLOURS["loewner"])):
-        mine = [row for row in rows if row[0] == form]
-        if mine:
-            axes.plot([row[3] for row in mine], [row[4] for row in mine], marker, color=colour,
-                      label={"Taylor model": "Taylor model: the sharper method"}.get(
-                          form, form + ": the thesis's"))
-    for form, name, n, ns, excess in rows:
-        taylor = form == "Taylor model"
-        if not taylor:
-            axes.annotate(name, (ns, excess), (5, 6), ha="right", **SMALL)
-        if name == "double":
-            axes.annotate("$x_%d$" % n, (ns, excess), (6, -4) if taylor else (-7, 0),
-                          va="center", ha="left" if taylor else "right",
-                          **{**SMALL, "fontsize": 9})
-    axes.margins(x=0.12, y=0.12)
-    axes.set(xscale="log", yscale="log", xlabel="time of an image (nanoseconds)",
-             ylabel="excess width of the enclosure",
-             title="How tightly, and how fast, the orbits of a prism are enclosed")
+    for method, forms in (("thesis", ("fixed form", "column rotor")),
+                          ("loewner", ("Taylor model",))):
+        (name, colour), mine = METHODS[method], [row for row in rows if row[0] in forms]
+        n, excess = zip(*((row[2], 100 * max(row[4] - 1, 1e-5)) for row in mine
+                          if row[1] == "double"))
+        axes.plot(n, excess, "o-", color=colour)
+        times = ["\n%.2g µs %s" % (row[3] / 1000, words)
+                 for digits, words in (("double", "in doubles"), ("35", "with 35 digits"))
+                 for row in mine if row[1:3] == (digits, n[-1])]
+        axes.annotate(name + ":" + ",".join(times), (n[-1], excess[-1]), (9, 5), va="top",
+                      textcoords="offset points", color=colour)
+    axes.set(yscale="log", xlim=(POINTS[0] - 0.2, POINTS[-1] + 0.8),
+             xlabel="point of the orbit", ylabel="excess width of the enclosure",
+             title="The sharper method encloses orbits more tightly, and in less time")
+    axes.set_xticks(POINTS, ["$x_%d$" % n for n in POINTS])
     axes.yaxis.set_major_formatter("{x:g}%")
-    axes.legend(loc="lower right")
-    return ("small: digits; geometric mean over both angles of $x_n$ on the orbits of $x^*$ and "
-            "$x_1$ in a prism (half-widths %s, %s;\na, b, c as in trig274), beside its corners' "
-            "and %d random points' orbits; of Taylor models alone\nwith the bounds of sines, per "
-            "prism of as many as the machine takes at once" % (*SUCCESSOR[1], SAMPLES))
+    return ("widths in doubles, compared with the orbits of the corners and of %d random points of "
+            "the prism\n(half-widths %s, %s; a, b, c as in trig274), geometric mean over both "
+            "angles; times of one image:\nof the sharper method with the bounds of sines, divided "
+            "by the prisms in a vector"
+            % (SAMPLES, *SUCCESSOR[1]))
 
 
 def draw_wall(figure, rows):
     axes = figure.subplots()
-    for name, marker, label in (("thesis", "s", "the thesis's method, 20 digits"),
-                                ("loewner", "o", "the sharper method")):
-        good, bad = ([(float(row[1]), row[2]) for row in rows
-                      if row[0] == name and row[4] == word] for word in ("yes", "no"))
-        axes.plot([x for x, _ in good], [y for _, y in good], marker + "-",
-                  color=COLOURS[name], label=label)
-        axes.plot([x for x, _ in bad], [y for _, y in bad], marker, color=COLOURS[name],
-                  markerfacecolor="white")
+    for method, marker, side, offset in (("thesis", "s", "right", -9), ("loewner", "o", "left", 9)):
+        (name, colour), mine = METHODS[method], _pick(rows, 0, method)
+        for word, line, face in (("yes", "-", colour), ("no", "", "white")):
+            part = _pick(mine, 4, word)
+            axes.plot([float(row[1]) for row in part], [row[2] for row in part], marker + line,
+                      color=colour, markerfacecolor=face)
+        for _, epsilon, prisms, *_ in _pick(mine, 4, "yes")[-1:]:
+            axes.annotate("%s:\ndown to ε = %s in %g s" % (name, epsilon, WALL_SECONDS),
+                          (float(epsilon), prisms), (offset, 0), textcoords="offset points",
+                          ha=side, va="center", color=colour)
     axes.set(yscale="log", title="Where the methods fail", ylabel="prisms proved",
              xlabel="ε, a single value (a = b = c/2)")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.55, 1))
-    return "on all cores" + (
-        "; open: given up, or not finished in %g seconds; the prisms proved until then"
-        % WALL_SECONDS
+    return "on all cores; the thesis's method with 20 digits" + (
+        "; open: given up, with the prisms proved until then"
         if _pick(rows, 4, "no") else "")
 
 
