@@ -146,7 +146,7 @@ def draw(rows):
 
     with style.context(["default", plot.CHART]):
         figure = Figure(figsize=(7.2, 3.9))
-        panels = figure.subplots(1, 2, gridspec_kw={"wspace": 0.25})
+        panels = figure.subplots(1, 2, gridspec_kw={"wspace": 0.32})
         for axes, column, words in ((panels[0], 3, "CPU time (seconds)"),
                                     (panels[1], 5, "bytes of the proof file or the certificate")):
             for (name, side), (marker, label) in WORDS.items():
@@ -155,13 +155,12 @@ def draw(rows):
                           marker + "-", color=COLOURS[side], label=label,
                           markerfacecolor=COLOURS[side] if name == "line" else "white")
                 last = mine[-1]
-                axes.annotate(last[2], (distance(name, last[2]), last[column]), (0, 5),
-                              textcoords="offset points", ha="center", va="bottom",
-                              color=COLOURS[side])
+                axes.annotate(last[2], (distance(name, last[2]), last[column]), (3, 4),
+                              textcoords="offset points", color=COLOURS[side])
             axes.set(xscale="log", yscale="log", ylabel=words,
                      xlabel="relative distance from break-up")
             axes.invert_xaxis()
-            axes.margins(0.08)
+            axes.margins(x=0.12, y=0.08)
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="upper center", ncol=2, bbox_to_anchor=(0.5, 1.02))
         return plot.encode(figure, "svg", pad_inches=0.08)

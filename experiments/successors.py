@@ -122,7 +122,7 @@ def draw_planes(path):
     from matplotlib.figure import Figure
 
     with style.context(["default", plot.STYLE]):
-        figure = Figure(figsize=(9.2, 3.4), layout="constrained")
+        figure = Figure(figsize=(7.8, 3.1), layout="constrained")
         for axes, value in zip(figure.subplots(1, len(PLANES), sharey=True), PLANES):
             proof = searched(line(value), PLANE_DEPTH)
             colours = np.empty((PIXELS, PIXELS, 4))
@@ -136,7 +136,7 @@ def draw_planes(path):
             axes.set(title="ε = %s, undecided %.1f%%" % (value, math.ceil(
                 1000 * undecided(proof)) / 10), xlabel=r"$(x_1 - x^*)_0/\pi$")
         figure.axes[0].set_ylabel(r"$(x_1 - x^*)_1/\pi$")
-        figure.axes[0].legend(loc="lower left")
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower right")
         files.write(path, plot.encode(figure, "svg", dpi=150))
 
 
