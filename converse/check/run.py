@@ -221,6 +221,8 @@ def check_leaves(problems, chosen, done, jobs, bar):
     size = CHUNK
     if problems.fast:
         fewest, most = FAST_CHUNK
+        if jobs == 1 and len(chosen) <= 4 * fewest:
+            fewest = 4 * fewest         # one chunk: the last batches of each are small and dear
         size = min(max(len(chosen) // (CHUNKS * jobs), fewest), most)
     jobs = max(min(jobs, -(-len(chosen) // size)), 1)       # no more processes than chunks
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
