@@ -8,7 +8,7 @@ import functools
 import math
 
 GUARD = 64                              # more bits, in which constants are computed
-SLICES = 256                            # of the circle, in the table of sines and cosines
+SLICES = 1024                           # of the circle, in the table of sines and cosines
 SINE_ERROR = 16                         # units; see Fixed.sincos
 
 
@@ -57,17 +57,17 @@ class Fixed:
     def _divisors(bits):
         """n (n - 1) and n (n + 1) for even n, downwards, as many as _small needs."""
         n = 2
-        while math.factorial(n + 2) << 5 * (n + 2) < 1 << bits:
+        while math.factorial(n + 2) << 7 * (n + 2) < 1 << bits:
             n += 2
         return [(m * (m - 1), m * (m + 1)) for m in range(n, 0, -2)]
 
     @staticmethod
     def _small(r, bits, divisors):
-        """The cosine and sine of |r| <= 1/32, each within 4 units.
+        """The cosine and sine of |r| <= 1/128, each within 4 units.
 
-        Horner's form of Taylor's series, with z = r^2 <= 2^-10.  The first term left out is below
+        Horner's form of Taylor's series, with z = r^2 <= 2^-14.  The first term left out is below
         a unit; the floor of z costs half a unit, those of an order two units, which the orders
-        after it make 2^-10 as large, and the last product one.
+        after it make 2^-14 as large, and the last product one.
         """
         one, z = 1 << bits, r * r >> bits
         c = s = one
@@ -85,7 +85,7 @@ class Fixed:
         """
         bits = self.bits
         n = (x * self.steps_per_radian >> bits) + (1 << 63) >> 64
-        if abs(n) > 1 << 32:            # n times the error of a step must stay below a unit
+        if abs(n) > 1 << 48:            # n times the error of a step must stay below a unit
             raise OverflowError("an angle is too large")
         c, s = self._small(x - (n * self.step >> GUARD), bits, self.divisors)
         sin, cos = self.table[n % SLICES]

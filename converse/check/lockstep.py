@@ -14,7 +14,6 @@ import random
 from fractions import Fraction
 
 from .arith import fixed_of, turn_of, turned
-from .claim import IDENTITY
 from .limits import (FIRST_TRY_SITES, HALVINGS_APART_MAX, MATTERS_MIN, MAX_CUTS, MAX_HALVINGS,
                      MAX_PIECES, MAX_SITES, SITE_PENALTIES)
 from .progress import complain
@@ -22,17 +21,16 @@ from .progress import complain
 np = None                               # numpy, once the fast path is wanted
 UNIT = 2.0 ** -53                       # the unit roundoff u of doubles
 TWO_PI = 2 * math.pi                    # within 0.35 u of 2 pi, relatively
-# Pairs of Taylor's coefficients: of the sine from x^17 to x^3, of the cosine from x^16 to x^6.
-TAYLOR = list(zip([(-1) ** k / math.factorial(2 * k + 1) for k in range(8, 0, -1)],
-                  [0, 0, *((-1) ** k / math.factorial(2 * k) for k in range(8, 2, -1))]))
 
 # Of the bound; docs/proofs/checker.md needs these values.
-SINE_ROUNDING = 24 * UNIT               # error of a sine or cosine, divided by |k0| + |k1|: (C12)
+SINE_ROUNDING = 24 * UNIT               # error of a sine or cosine, divided by |k0| + |k1|: (C11)
 SUM_ROUNDING = 1 + 2.0 ** -40           # factor for the roundings of a sum of positive terms: (C16)
-MASS_MAX = 2.0 ** 900                   # of the mass, so that sums do not overflow: (C20)
-XSTAR_ERROR = 2.0 ** -51                # of x*, in radians; see Lockstep.take_regions
+GRID = 1.5 * 2.0 ** 26                  # doubles near it are multiples of 2^-26: (C19)
+REST_MAX = MAX_SITES * 2.0 ** -26       # of the rests of all sites, 2^-27 for each site of a lane
+MASS_MAX = 2.0 ** 22                    # of the masses, so that sums of such multiples are exact
 WHOLE_ERROR = 2.0 ** -61                # radians in 2^-64 turns, and more
-FORCE_ROUNDING = 8 * UNIT               # of a wave's force, divided by its amplitude: (C13)
+FORCE_ROUNDING = UNIT / 16              # of a wave's force, divided by its amplitude: (C13)
+AMPLITUDE_BITS, AMPLITUDE_UNIT = 100, 2.0 ** -100       # of amplitudes, in turns: (C9)
 UNDERFLOW_MARGIN = 2.0 ** -200          # added to sizes and divisors that may underflow
 FAST_SIZE_MAX = 2.0 ** 10               # of amplitudes, x*, regions (in turns) and frames
 FAST_CUTS_MAX = 52                      # cuts of an axis, so that cells are exact in doubles
@@ -41,10 +39,10 @@ DETERMINANT_MIN = 2.0 ** -60            # of d; smaller ones end a lane: (C15)
 
 # Of the effort, on which no theorem rests; chosen by the table in docs/proofs/checker.md.
 BATCH, BATCH_MIN = 1024, 16             # prisms in lockstep, at first and where orbits are long
-MEMORY_MAX = 1 << 30                    # bytes of the sites of a batch
+MEMORY_MAX = 1 << 31                    # bytes of the sites of a batch
 LENGTH_MARGIN = 1.5                     # by which orbits of a batch may be longer than the last's
 BLOCK = 1 << 13                         # sites times lanes that are added up together
-EARLY_TRY_GROWTH = 8                    # of a reach while the length of its lane doubles
+EARLY_TRY_GROWTH = 16                   # of a reach while its lane becomes four times as long
 
 
 @functools.lru_cache(maxsize=1)
@@ -80,29 +78,58 @@ def whole(turns):
     return np.ldexp(np.where(turns < 0.5, turns, turns - 1), 64).astype(np.int64)
 
 
-def lockstep_sincos(angles):
-    """Sines and cosines of angles in units of 2^-64 turns: each within 4 u.
+def wrapped(units):
+    """Integers modulo 2^64."""
+    return ((units + (1 << 63)) % (1 << 64) - (1 << 63)).astype(np.int64)
 
-    The angle less n quarter turns is at most 1/8; in radians it has a relative error of 2.4 u.
-    Taylor's polynomials are off by less than u/50.  sine: 1.9 u for the angle, 0.6 u for the number
-    added to it, at most 0.081, 0.8 u for the sum; cosine: 1.4 u, 0.4 u for the square's half, 0.1 u
-    for the rest, 0.4 u and u for the sums.
+
+def units_of(x, bits):
+    """x radians in units of 2^-bits turns, off by less than 1.1 units for bits <= 100 and |x| up to
+    FAST_SIZE_MAX: x and pi are taken within 2^-127."""
+    fixed = fixed_of(128)
+    return (math.floor(x * fixed.one) << bits) // (2 * fixed.pi)
+
+
+def in_turns(amplitudes):
+    """Amplitudes in units of 2^-AMPLITUDE_BITS turns as most / 2^38 + rest 2^26 turns, and rounded
+    to a double, all in turns."""
+    bits = AMPLITUDE_BITS - 38
+    return ((amplitudes >> bits).astype(np.int64),
+            (amplitudes & (1 << bits) - 1).astype(float) * (AMPLITUDE_UNIT / 2.0 ** 26),
+            amplitudes.astype(float) * AMPLITUDE_UNIT)
+
+
+@functools.lru_cache(maxsize=1)
+def circle():
+    """Of the cosines of the 1024th parts of a turn: the nearest multiples of 2^-26, as integers,
+    the rest, and the cosines rounded; the sines are those of 256 parts less."""
+    fixed = fixed_of(128)
+    cosines = [cosine for _, cosine in fixed.table]
+    near = [(x >> 101) + 1 >> 1 for x in cosines]
+    return (np.array(near, np.int64),
+            np.array([x - (y << 102) for x, y in zip(cosines, near)], float) / fixed.one,
+            np.array(cosines, float) / fixed.one)
+
+
+def lockstep_sincos(angles):
+    """Sines and cosines of angles in units of 2^-64 turns, each within 2 u, and the cosine as
+    near / 2^26 + low, within u/40.
+
+    The angle less the nearest 1024th part of a turn is at most 1/325; in radians it has a relative
+    error of 1.4 u, and its sine of 2.5 u.  Taylor's polynomials are off by less than u/2^20.  So
+    what is added to a number of the table, at most 1/320, is off by 5.6 u/325 and the roundings of
+    6 u/325^2 and u/320: in all u/40.
     """
-    quadrant = (angles + (1 << 61)) >> 62
-    angle = (angles - (quadrant << 62)) * (TWO_PI / 2.0 ** 64)
-    square = angle * angle
-    first, *more = np.array(TAYLOR).reshape(len(TAYLOR), 2, *[1] * angles.ndim)
-    terms = first * square
-    for pair in more:
-        terms += pair
-        terms *= square
-    sine, cosine = terms
-    sine *= angle
-    sine += angle
-    cosine = 1 - (0.5 * square - square * square * (cosine + 1 / 24))
-    odd = (quadrant & 1) == 1
-    return (np.where(odd, cosine, sine) * (1 - (quadrant & 2)),
-            np.where(odd, sine, cosine) * (1 - (quadrant + 1 & 2)))
+    part = angles + (1 << 53) >> 54
+    near, rest, cosines = circle()
+    at, beside = part & 1023, part - 256 & 1023
+    r = (angles - (part << 54)) * (TWO_PI / 2.0 ** 64)
+    square = r * r
+    versed = square * (0.5 - square * (1 / 24 - square / 720))
+    sine = r - r * square * (1 / 6 - square * (1 / 120 - square / 5040))
+    C, S, near = cosines[at], cosines[beside], near[at]
+    low = rest[at] - (C * versed + S * sine)
+    return S + (C * sine - S * versed), near * 2.0 ** -26 + low, near, low
 
 
 def combined(table, waves):
@@ -297,7 +324,8 @@ class Sums:
         """known: the number of symbols; angles: the number of the parameters, which come first."""
         self.known, self.angles = known, angles
         self.pairs = [(i, j) for i in range(known) for j in range(i, known)]
-        self.value, self.mass, self.error = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+        self.value, self.low, self.error = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+        self.mass, self.bent = np.zeros(lanes), np.zeros(lanes)
         self.linear, self.square = np.zeros((known, lanes)), np.zeros((len(self.pairs), lanes))
         self.cubic = np.zeros((known, len(self.pairs), lanes))      # of e[i] and of a pair
         self.mixed = np.zeros((angles, known, lanes))   # of e[i] and a parameter's symbol
@@ -322,10 +350,17 @@ class Sums:
             self.square += (P[w] * A0 / 2 * xi).sum(axis=-2)
             self.cubic += (first[:, None] * xi).sum(axis=-2)
 
+    def add(self, terms):
+        """Adds these terms, of several sites, to the value: multiples of 2^-26 exactly, and apart
+        from them the rests, of at most 2^-27 each; step (C19)."""
+        coarse = terms + GRID - GRID
+        self.value += coarse.sum(axis=-2)
+        self.low += (terms - coarse).sum(axis=-2)
+
     def join(self, joined):
         """Puts the lanes of each prism together."""
-        for name in ("value", "mass", "error", "linear", "square", "cubic", "mixed", "skew",
-                     "ends"):
+        for name in ("value", "low", "mass", "bent", "error", "linear", "square", "cubic", "mixed",
+                     "skew", "ends"):
             setattr(self, name, joined(getattr(self, name)))
 
     def form(self):
@@ -358,12 +393,14 @@ class Prisms:
     before those back."""
 
     def __init__(self, box, shape, xstar, l, penalties=SITE_PENALTIES[0]):
-        """The box: P, h (by wave and symbol) and W of the waves, X[1] in turns, its columns (by
-        coordinate and symbol, of which the last two span the parallelogram) and the error of x[1],
-        in radians; the Shape; x* in turns; l; and penalties (see SITE_PENALTIES)."""
-        P, h, W, x, columns, off = box
+        """The box: amplitudes as in_turns() gives them, h (by wave and symbol) and W of the waves,
+        X[1], its columns (by coordinate and symbol, of which the last two span the parallelogram)
+        and the error of x[1], in radians; the Shape; x*; l; and penalties (see SITE_PENALTIES).
+        X[1] and x* are in units of 2^-64 turns."""
+        turns, h, W, x, columns, off = box
         self.size, self.shape = x.shape[1], shape
-        self.P, self.h, self.W = self.both(P, P), self.both(h, h), self.both(W, W)
+        self.turns = [self.both(part, part) for part in turns]
+        self.P, self.h, self.W = self.turns[-1] * TWO_PI, self.both(h, h), self.both(W, W)
         self.H = np.abs(self.h).sum(axis=1) * SUM_ROUNDING
         self.magnitude, self.l = np.abs(self.P), self.both(l, l)
         self.penalties = [self.both(x + 0 * l, x + 0 * l) for x in penalties]
@@ -373,12 +410,10 @@ class Prisms:
         self.pairs = list(itertools.combinations_with_replacement(range(self.known), 2))
         self.halves = np.array([[0.5 if i == j else 1] for i, j in self.pairs])
         self.bound_roundings()
-        start, none = xstar + 0 * x, np.zeros_like(x)
-        blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_ERROR)
+        start, blank, rounding = xstar + 0 * x, 0 * columns, np.full_like(off, WHOLE_ERROR)
         self.ends, self.rounding = self.both(columns, blank), self.both(off, rounding)
         a, b = map(abs, self.turn)
-        off, rounding = [np.stack((a * u + b * v, b * u + a * v))
-                         for u, v in (off + none, rounding)]
+        off, rounding = [np.stack((a * u + b * v, b * u + a * v)) for u, v in (off, rounding)]
         self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, off)
         self.first = self.both(x, start), self.both(columns, blank), self.both(off, rounding)
         self.sites, self.excluded = [], np.zeros(self.size, bool)  # which are not followed further
@@ -395,10 +430,9 @@ class Prisms:
         stiff = combined(shape.stiff, self.magnitude)
         self.F, self.F01 = shape.grain * (1 + stiff[::2]), shape.grain * stiff[1]
         self.from_H = shape.grain * combined(shape.strong, self.H)
-        # Of the step of the centre, and of the first centres in that frame.
+        # Of the step of the centre.
         self.push = FORCE_ROUNDING * combined(shape.strengths, self.magnitude) \
             + WHOLE_ERROR * abs(shape.k).sum()
-        self.start_error = WHOLE_ERROR * (abs(q0) + abs(q1))
         # Of beta in that frame.
         self.along, self.beside = (self.F[0] + self.F[1],) * 2 if q1 else (self.F, self.F01)
 
@@ -415,9 +449,7 @@ class Prisms:
     def begin(self):
         """The lanes at their first sites.  LT: L, then T, as columns; near: a bound of L e + T(e)
         in each coordinate; a 0 stands for the site before."""
-        (X0, L0, r0), (X, L, r) = self.before, self.first
-        self.X0, self.X = whole(X0), whole(X)
-        self.r0, self.r = [x + self.start_error + 0 * (X + X0) for x in (r0, r)]    # NaN if any is
+        (self.X0, L0, self.r0), (self.X, L, self.r) = self.before, self.first
         none = np.zeros((2, len(self.pairs), L.shape[-1]))
         self.LT0, self.LT = [np.concatenate((x, none), axis=1) for x in (L0, L)]
         self.near0, self.d, self.f = np.abs(L0).sum(axis=1), None, None
@@ -434,8 +466,8 @@ class Prisms:
         to be tried earlier; False if the memory is full.
 
         An early try costs as much as the try at the end.  So there is one only if, for the majority
-        of the lanes, the reach grew by less than EARLY_TRY_GROWTH while the length doubled, as near
-        elliptic orbits, which end late.
+        of the lanes, the reach grew by less than EARLY_TRY_GROWTH since the last, as near elliptic
+        orbits, which end late.
         """
         due, reached = FIRST_TRY_SITES, 0
         while True:
@@ -456,7 +488,7 @@ class Prisms:
                 if 2 * slow.sum() > self.alive.sum():
                     yield True
                     self.end(self.alive & self.both(self.excluded, self.excluded))
-                reached, due = farthest, 2 * due
+                reached, due = farthest, 4 * due
             self.step()
 
     def measure(self):
@@ -490,14 +522,15 @@ class Prisms:
     def step(self):
         """Adds this site to the lanes and goes on to the next: steps (C4) to (C6)."""
         P, shape = self.P, self.shape
-        s, c = lockstep_sincos(shape.angles(self.X))
+        s, c, near, low = lockstep_sincos(shape.angles(self.X))
         beta = combined(shape.forms, P * -s)
         beta[::2] += 2
         LT = applied(beta[:, None], self.LT) - self.LT0
         mean = self.add_forces(LT, s, c)
         self.sites.append(Sites(self.alive, s, c, self.columns, self.rest,
                                 combined(shape.forces, mean)))
-        forces = whole(P / TWO_PI * c - mean / TWO_PI)
+        most, rest, turns = self.turns
+        forces = most * near + whole(turns * low + rest * near - mean / TWO_PI)
         self.X, self.X0 = 2 * self.X - self.X0 + shape.k.T @ forces, self.X
         r = self.next_rests(beta, np.abs(s), np.abs(c))
         self.LT, self.LT0, self.r, self.r0, self.near0 = LT, self.LT, r, self.r, self.near
@@ -678,14 +711,14 @@ class Prisms:
                                    stacked(tails[start:start + span]), mus, A, B)
         self.add_ends(sums, mu, mu1, terms)
         sums.join(self.joined)
-        sums.value -= 2 * (n[0][0, :self.size] * n[0][0, self.size:]
-                           + n[0][1, :self.size] * n[0][1, self.size:])
+        x, y = n[0][:, :self.size], n[0][:, self.size:]
+        value = sums.value + sums.low - 2 * (x[0] * y[0] + x[1] * y[1])
         form = sums.form()
         added = sum([np.abs(x) for x in form.values()])
         chain = (len(self.P) + 2) * (span + -(-N // span))  # terms one after the other: (C19)
-        mass = UNIT * ((chain + 256) * sums.mass + 64 * added)
-        error = (sums.error + mass) * (SUM_ROUNDING + 64 * UNIT * N)
-        return sums.value, form, added, np.where(mass < UNIT * MASS_MAX, error, math.inf)
+        mass = 96 * sums.mass + 256 * sums.bent + chain * (sums.bent + REST_MAX) + 64 * added
+        error = (sums.error + UNIT * mass) * (SUM_ROUNDING + 64 * UNIT * N)
+        return value, form, added, np.where(sums.mass + sums.bent < MASS_MAX, error, math.inf)
 
     def multipliers(self, sites, omega, mu, mu1):
         """Step (C7), from the last of these sites inwards: mu of each and of the one beyond, A and
@@ -712,19 +745,18 @@ class Prisms:
         shape, P, H, W = self.shape, self.P[:, None], self.H[:, None], self.W[:, None]
         (E0, E1), size, reach = site.E, site.size, site.reach
         magnitude, long, (mu, mu1) = np.abs(P), n0[0] ** 2 + n0[1] ** 2, mus
-        sums.value += (2 * long - (P * omega * site.s).sum(axis=0) - self.l * tails * long
-                       - 2 * (n0[0] * n1[0] + n0[1] * n1[1])
-                       + (mu[0, 0] * E0 + mu[1, 0] * E1)).sum(axis=0)
+        sums.add(2 * long - (P * omega * site.s).sum(axis=0) - self.l * tails * long
+                 - 2 * (n0[0] * n1[0] + n0[1] * n1[1]) + (mu[0, 0] * E0 + mu[1, 0] * E1))
         sums.linear += (mu[0, 1:] * E0 + mu[1, 1:] * E1).sum(axis=1)
         sums.add_waves(shape, P, self.h, site.columns, A, B)
         most = np.abs(mu).sum(axis=1)
-        weight = shape.K[:, None, None] * (combined(shape.sizes, most)
-                                           + shape.square[:, None, None] * long)
+        K, square = shape.K[:, None, None], shape.square[:, None, None] * long
+        weight = K * (combined(shape.sizes, most) + square)
         left = remainder(P, H, W, A[:, 0], np.abs(A[:, 1:]).sum(axis=1), B[:, 0],
                          np.abs(B[:, 1:]).sum(axis=1), weight, size, site.rest, reach)
         sums.error += left.sum(axis=(0, 1))
-        sums.mass += (2 * long + (weight * (magnitude * (1 + reach * reach) + 3 * H)).sum(
-            axis=0)).sum(axis=0)
+        sums.mass += (2 * long + (K * magnitude * square).sum(axis=0)).sum(axis=0)
+        sums.bent += (weight * (magnitude * reach * reach + 3 * H)).sum(axis=(0, 1))
         terms = combined(shape.strengths, weight * (magnitude * (1 + size) + H)) \
             + 2 * most + np.abs(mu1).sum(axis=1)
         # The last but one: what E is off by, (C18).
@@ -738,9 +770,8 @@ class Prisms:
         sizes of the terms of G, without mu of the other lane."""
         across = self.other(mu)
         G, terms = G - across, terms + np.abs(across).sum(axis=1)
-        rounding = self.rounding + WHOLE_ERROR
-        small = np.abs(G).sum(axis=1) * rounding \
-            + self.shape.grain * terms * (np.abs(self.ends).sum(axis=1) + rounding)
+        small = np.abs(G).sum(axis=1) * self.rounding \
+            + self.shape.grain * terms * (np.abs(self.ends).sum(axis=1) + self.rounding)
         sums.error += small[0] + small[1]
         sums.ends = np.stack([G[0] * x + G[1] * y for x, y in zip(*self.ends)])
 
@@ -778,101 +809,94 @@ class Lockstep:
                               if any(shift)}) + [0, 1]
         self.take_waves(claims)
         self.take_regions(claims)
-        sizes = self.scale, self.half, self.shifts, self.frame, *[
-            [float(x) for x in (*claim.xstar, *claim.centre)] for claim in claims]
-        if max([np.max(np.abs(x), initial=0) for x in sizes]) > FAST_SIZE_MAX:
+        sizes = [x for claim in claims for x in (
+            *claim.xstar, *claim.centre, *claim.frame,
+            *[x / 2 for x in itertools.chain(*claim.moves)],
+            *[2 * (abs(wave.middle) + sum(map(abs, wave.parts))) for wave in claim.examined])]
+        if max(map(abs, sizes)) > FAST_SIZE_MAX:
             raise ValueError("too large for the fast path")
 
     def take_waves(self, claims):
-        """The waves of all claims, and by wave and claim their amplitudes: the middle, the parts of
-        each axis, and twice the sum of the absolute values of both (scale)."""
+        """The waves of all claims, and by wave and claim whether it is there, its middle and, by
+        axis of cells, its parts, in units of 2^-AMPLITUDE_BITS turns."""
         waves = list(dict.fromkeys((wave.k, wave.phase % 2) for claim in claims
                                    for wave in claim.examined))
         shape = len(waves), len(claims)
-        self.middle, self.scale = np.zeros(shape), np.zeros(shape)
-        self.parts = np.zeros((len(self.axes) - 2, *shape))
+        self.present = np.zeros(shape, bool)
+        self.middle, self.parts = np.full(shape, 0, object), np.full((5, *shape), 0, object)
         for q, claim in enumerate(claims):
             for wave in claim.examined:
                 w = waves.index((wave.k, wave.phase % 2))
-                parts = [wave.parts[axis - 2] if axis - 2 < len(wave.parts) else 0
-                         for axis in self.axes[:-2]]
-                self.middle[w, q] += float(wave.middle)
-                self.parts[:, w, q] += [float(part) for part in parts]
-                self.scale[w, q] += 2 * float(abs(wave.middle) + sum(map(abs, parts)))
-        self.shape = Shape(waves, [(w, m) for m, w in zip(*self.parts.any(axis=2).nonzero())],
+                middle, *parts = [units_of(x, AMPLITUDE_BITS) for x in (wave.middle, *wave.parts)]
+                self.present[w, q] = True
+                self.middle[w, q] += middle
+                self.parts[2:2 + len(parts), w, q] += parts
+        self.shape = Shape(waves, [(w, m) for m, axis in enumerate(self.axes[:-2])
+                                   for w in self.parts[axis].any(axis=1).nonzero()[0]],
                            len(self.axes) - 2)
 
     def take_regions(self, claims):
-        """The regions of all claims, and x*, in turns.
+        """The regions of all claims, and x*, in units of 2^-64 turns: the centres, and what moves
+        them along each axis of cells, rounded down."""
+        def units(along):
+            return [math.floor(v * (1 << 63)) for v in along]
 
-        x* is off by 2^-54 of its rounding and by 2^-80 of the integers, less than XSTAR_ERROR /
-        2 pi.
-        """
-        self.centre = np.array([[float(v / 2 % 1) for v in claim.centre] for claim in claims]).T
-        self.half = np.array([[float(v / 2) for v in claim.half] for claim in claims]).T
-        self.shifts = np.array([[[float(claim.moves[axis][i] / 2) for claim in claims]
-                                 for axis in self.axes[:-2]] for i in (0, 1)]).reshape(
-                                     2, len(self.axes) - 2, len(claims))
-        self.frame = np.array([claim.frame for claim in claims], float).T
-        fixed, half_turn = fixed_of(128), Fraction(1, 2)
-        self.xstar = np.array([[float(
-            (Fraction(math.floor(x * fixed.one), 2 * fixed.pi) + half_turn) % 1 - half_turn)
-            for x in claim.xstar] for claim in claims]).T
+        self.centre = np.array([units(claim.centre) for claim in claims], object).T
+        self.moves = np.array([[units(along) for along in claim.moves] for claim in claims],
+                              object).transpose(1, 2, 0)
+        self.frame = np.array([claim.frame for claim in claims], object).T.reshape(2, 2, -1)
+        self.xstar = wrapped(np.array([[units_of(x, 64) for x in claim.xstar] for claim in claims],
+                                      object).T)
 
     def box(self, index, cuts, number):
         """Boxes that cover these cells of the claims with these numbers, as Prisms takes them.
 
-        at, the middle of a cell, and part, its half-width, both for the half-width 1 of the claim,
-        are exact.
+        at / 2^cuts, the middle of a cell, and part, its half-width, both for the half-width 1 of
+        the claim, are exact.
         """
-        part = np.ldexp(1.0, -cuts.astype(np.intc))
-        at = (2 * index + 1 - (1 << cuts)) * part
-        return *self.amplitudes(at, part, number), *self.successors(at, part, number)
+        at, part = 2 * index + 1 - (1 << cuts), np.ldexp(1.0, -cuts.astype(np.intc))
+        cells = at.astype(object), cuts.astype(object), part, number
+        return *self.amplitudes(*cells), *self.successors(*cells)
 
-    def amplitudes(self, at, part, number):
-        """P, h and W of the waves of these cells.
+    def amplitudes(self, at, cuts, part, number):
+        """The amplitudes, h and W of the waves of these cells.
 
-        The doubles near middles and parts are off by u of them, the products and sums by u of
-        theirs, of four at most: in total by less than 8 u of their sum, of which scale is the
-        double.
+        An amplitude is off by less than 1.1 units for the middle, and by 2.1 for each part: in all
+        by less than 2^-94 radians.  A part is off by 2.4 u of it and 2^-97 radians more.
         """
-        P = np.zeros((len(self.shape.known), number.size))
-        W, h = np.zeros_like(P), np.zeros((len(P), self.shape.parameters, number.size))
-        for w, middle, scale in zip(self.shape.at, self.middle, self.scale):
-            P[w] = middle[number]
-            W[w] = np.where(scale[number] > 0, 8 * UNIT * scale[number] + UNDERFLOW_MARGIN, 0)
-        for m, axis in enumerate(self.axes[:-2]):
-            for w, parts in zip(self.shape.at, self.parts[m]):
-                P[w] += parts[number] * at[axis]
-                h[w, m] = parts[number] * part[axis]
-        return P, h, W
+        A = np.full((len(self.shape.known), number.size), 0, object)
+        W, h = np.zeros(A.shape), np.zeros((len(A), self.shape.parameters, number.size))
+        for w, here, middle, parts in zip(self.shape.at, self.present, self.middle,
+                                          self.parts.swapaxes(0, 1)):
+            A[w] = middle[number]
+            for m, axis in enumerate(self.axes[:-2]):
+                if parts[axis].any():
+                    along = parts[axis, number]
+                    A[w] += along * at[axis] >> cuts[axis]
+                    h[w, m] = along.astype(float) * (TWO_PI * AMPLITUDE_UNIT) * part[axis]
+            W[w] = np.where(here[number], 2.0 ** -93 + 3 * UNIT * np.abs(h[w]).sum(axis=0), 0)
+        return in_turns(A), h, W
 
-    def successors(self, at, part, number):
+    def successors(self, at, cuts, part, number):
         """X[1] of these cells, its columns, and the error of x[1].
 
-        What amplitudes() counts holds for centres and half-widths of the angles and at most three
-        shifts, in at most four sums: 6 u of the centre, 7 u of the half-widths, 6 u of the shifts,
-        and 3 u more of the shifts for their columns.  The sides are lengthened by all this.  In a
-        frame other than the identity x[1] has the roundings of two products and a sum, in turns,
-        and so have its columns.
+        In turns, the centre and what each axis adds are off by 1 and 3 units, of which the frame
+        makes as many as its entries; and a column is off by 5 u of its terms.
         """
-        V = self.centre[:, number] + self.half[:, number] * at[:2]
-        moves, moved = np.zeros((2, len(self.axes), number.size)), 0
-        for m, axis in enumerate(self.axes[:-2]):
-            shifts = self.shifts[:, m, number]
-            V += shifts * at[axis]
-            moves[:, m] = TWO_PI * shifts * part[axis]
-            moved = moved + np.abs(shifts)
-        V -= np.rint(V)
-        moves[(0, 1), (-2, -1)] = TWO_PI * SUM_ROUNDING * (self.half[:, number] * part[:2] + (
-            8 * UNIT * ((self.centre + self.half)[:, number] + 2 * moved) + UNDERFLOW_MARGIN))
-        frame = self.frame[:, number]
-        X, columns, sizes = [np.stack((f[0] * v[0] + f[1] * v[1], f[2] * v[0] + f[3] * v[1]))
-                             for f, v in ((frame, V), (frame, moves),
-                                          (np.abs(frame), np.abs(moves)))]
-        off = UNIT * (8 * np.abs(frame.reshape(2, 2, -1)).sum(axis=1) + 4 * sizes.sum(axis=1))
-        off[:, (frame.T == IDENTITY).all(axis=1)] = 0
-        return X - np.rint(X), columns, off
+        V, columns = self.centre[:, number], np.zeros((2, len(self.axes), number.size))
+        for m, axis in enumerate(self.axes):
+            along = self.moves[axis][:, number]
+            V = V + (along * at[axis] >> cuts[axis])
+            columns[:, m] = along.astype(float) * (TWO_PI / 2.0 ** 64) * part[axis]
+        frame = self.frame[..., number]
+        X = wrapped((frame * V).sum(axis=1))
+        frame = frame.astype(float)
+        sizes = np.abs(frame)
+        columns, terms = [(f[:, :, None] * x).sum(axis=1) for f, x in (
+            (frame, columns), (sizes, np.abs(columns)))]
+        off = WHOLE_ERROR * (1 + 3 * len(self.axes)) * sizes.sum(axis=1) \
+            + 6 * UNIT * terms.sum(axis=1)
+        return X, columns, off
 
     def attempt(self, index, cuts, number, l, penalties, halved=None):
         """Is (C3) true of all orbits of these cells?  Returns an answer for each, and the axis
