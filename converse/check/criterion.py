@@ -8,10 +8,9 @@ from fractions import Fraction
 from .arith import SINE_ERROR, fixed_of, in_units, stiffness, upper_sqrt
 from .exact import Prism, PrismWave, attempt
 from .failures import NotConfirmed, Rejected
-from .limits import (HALVINGS_APART_MAX, MATTERS_MIN, MAX_BITS, MAX_HALVINGS, MAX_PIECES,
-                     SITE_PENALTIES)
+from .limits import MAX_BITS, MAX_HALVINGS, MAX_PIECES, SITE_PENALTIES
 from .torus import is_at_once, torus_bound
-from .tree import changed, trees
+from .tree import changed, trees, worst_axis
 
 BOUND_BITS = 256        # of the bound B; the thousands of bits of narrow cells do not improve it
 
@@ -144,10 +143,7 @@ class Criterion:
             why, blame = failed
             if sum(halved) >= MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
                 return "%s (piece %d, halved %d times)" % (why, pieces, sum(halved)), pieces
-            # The axis that matters most, of those that were not halved far more often than another.
-            matter = [(x, a) for x, a in zip(blame, self.axes) if x >= max(blame) * MATTERS_MIN]
-            often = min([halved[a] for _, a in matter]) + HALVINGS_APART_MAX
-            worst = max([(x, a) for x, a in matter if halved[a] <= often], key=lambda m: m[0])[1]
+            worst = self.axes[worst_axis(blame, [halved[a] for a in self.axes])]
             index, cuts = piece
             todo += [(changed(index, worst, 2 * index[worst] + upper),
                       changed(cuts, worst, cuts[worst] + 1)) for upper in (0, 1)]

@@ -14,9 +14,9 @@ import random
 from fractions import Fraction
 
 from .arith import fixed_of, turn_of, turned
-from .limits import (FIRST_TRY_SITES, HALVINGS_APART_MAX, MATTERS_MIN, MAX_CUTS, MAX_HALVINGS,
-                     MAX_PIECES, MAX_SITES, SITE_PENALTIES)
+from .limits import FIRST_TRY_SITES, MAX_HALVINGS, MAX_PIECES, MAX_SITES, SITE_PENALTIES
 from .progress import complain
+from .tree import worst_axis
 
 np = None                               # numpy, once the fast path is wanted
 UNIT = 2.0 ** -53                       # the unit roundoff u of doubles
@@ -900,8 +900,8 @@ class Lockstep:
 
     def attempt(self, index, cuts, number, l, penalties, halved=None):
         """Is (C3) true of all orbits of these cells?  Returns an answer for each, and the axis
-        along which to cut it, or -1 if cuts will not help; None if their orbits are too long for a
-        batch of this size.  halved: how often each cell was halved along each axis."""
+        along which to cut it, or -1 if no cut is needed or will help; None if their orbits are too
+        long for a batch of this size.  halved: how often each cell was halved along each axis."""
         with np.errstate(all="ignore"):
             prisms = Prisms(self.box(index, cuts, number), self.shape, self.xstar[:, number], l,
                             penalties)
@@ -915,16 +915,11 @@ class Lockstep:
         most = prisms.sites_max * prisms.size / (LENGTH_MARGIN * len(prisms.sites))
         self.batch = min(max(int(most), BATCH_MIN), BATCH)
         vain = prisms.joined(prisms.sites[-1].alive) & (len(prisms.sites) == MAX_SITES)
-        return prisms.excluded, np.where(vain, -1, self.worst_axis(blame, halved))
-
-    def worst_axis(self, blame, halved):
-        """The axis that matters most, or one that matters and was halved far less often."""
-        axis = blame.argmax(axis=0)
-        if halved is not None:
-            halved, at = halved[self.axes], np.arange(axis.size)
-            last = np.where(blame > blame[axis, at] * MATTERS_MIN, halved, MAX_CUTS).argmin(axis=0)
-            axis = np.where(halved[axis, at] - halved[last, at] > HALVINGS_APART_MAX, last, axis)
-        return np.array(self.axes)[axis]
+        axis, often = np.full(prisms.size, -1), (0 * cuts if halved is None else halved)[self.axes]
+        cut = np.flatnonzero(~(prisms.excluded | vain))
+        axis[cut] = [self.axes[worst_axis(*both)] for both in zip(
+            blame[:, cut].T.tolist(), often[:, cut].T.tolist())]
+        return prisms.excluded, axis
 
     def settle(self, cells, least, exactly):
         """Decides on cells, pairs of a claim's number and a cell, with these l: (number of the

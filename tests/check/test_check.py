@@ -2533,6 +2533,16 @@ def test_both_paths_agree(np, deep, moving, run):
         assert status == 5
 
 
+@pytest.mark.parametrize("blame, halved, axis", [
+    ([0.5, 1.0, 0.2], [0, 0, 0], 1), ([0.5, 1.0, 0.2], [0, 4, 0], 1),
+    ([0.5, 1.0, 0.2], [1, 5, 0], 2), ([0.5, 1.0, 0.2], [0, 5, 1], 0),
+    ([2.0 ** -31, 1.0, 0.0], [0, 9, 0], 1),
+    ([2.0 ** -30, 1.0, 0.0], [0, 9, 0], 0), ([math.nan, 1.0], [9, 0], 0), ([0.0, 0.0], [0, 9], 0)])
+def test_the_axis_that_is_halved(blame, halved, axis):
+    """One that was halved far less often has its turn, if it matters."""
+    assert check.worst_axis(blame, halved) == axis
+
+
 def test_the_fast_path_goes_on(np, deep, run, tmp_path, monkeypatch):
     """Struck amid its work, it goes on from its state, and counts nothing twice."""
     state, attempt, calls = tmp_path / "state", check.Lockstep.attempt, []
