@@ -2315,6 +2315,62 @@ def test_sums_in_blocks(np, generator, monkeypatch):
     assert cases > 10
 
 
+def test_sums_of_the_value(np):
+    """Multiples of 2^-26 add up exactly, however many of them cancel, and only what is beside them
+    is rounded: step (C19)."""
+    draw = np.random.default_rng(3)
+    for size in 2.0 ** -30, 1.0, 2.0 ** 9:
+        terms = draw.uniform(-size, size, (40, 100, 2))
+        sums = check.Sums(2, 0, 2)
+        sums.add(terms[0, :1])
+        assert (abs(sums.low) <= 2.0 ** -27).all()
+        sums.add(terms[0, 1:])
+        for block in terms[1:]:
+            sums.add(block)
+        for lane in range(2):
+            exact = sum(map(Fraction, terms[..., lane].ravel().tolist()))
+            found = Fraction(sums.value[lane]) + Fraction(sums.low[lane])
+            assert abs(exact - found) <= Fraction(4000 * 140, 1 << 27 + 53)
+            assert sums.value[lane] * 2 ** 26 % 1 == 0 and abs(sums.low[lane]) <= 4000 / 2 ** 27
+
+
+def test_masses_of_roundings(np, generator, monkeypatch):
+    """The masses, of each wave and site, and what (C19) takes of them; none where they are large.
+    """
+    blocks, joined, add_sites, join = [], [], check.Prisms.add_sites, check.Sums.join
+    monkeypatch.setattr(check.Prisms, "add_sites", lambda self, *block: (
+        blocks.append(block), add_sites(self, *block))[1])
+    monkeypatch.setattr(check.Sums, "join", lambda self, both: (
+        join(self, both), joined.append(self))[0])
+    cases = large = 0
+    for length in [1] * 6 + [2.0 ** 11] * 2:
+        prisms, both = random_prisms(np, generator, scale=0.5), (2, -1)
+        blocks.clear()
+        with np.errstate(all="ignore"):
+            assert all(prisms.follow())
+            n, tails = prisms.test_vectors()
+            prisms.test_vectors = lambda: ([length * v for v in n], tails)
+            _, _, added, error = prisms.expand()
+        m0, m2, N, size = 0, 0, len(prisms.sites), prisms.size
+        for _, site, n, _, _, _, mus, _, _ in blocks:
+            long, mu = (n * n).sum(axis=0), abs(mus[0]).sum(axis=1)
+            m0 = m0 + (2 * long).sum(axis=0).reshape(both).sum(axis=0)
+            for (k, _), P, H, reach in zip(prisms.shape.known, abs(prisms.P), prisms.H,
+                                           site.reach):
+                K, square = sum(map(abs, k)), (k[0] ** 2 + k[1] ** 2) * long
+                weight = K * (abs(k[0]) * mu[0] + abs(k[1]) * mu[1] + square)
+                m0, m2 = [m + x.sum(axis=0).reshape(both).sum(axis=0) for m, x in (
+                    (m0, K * P * square), (m2, weight * (P * reach ** 2 + 3 * H)))]
+        block = max(1, check.BLOCK // (2 * size))
+        chain = (len(prisms.P) + 2) * (block + math.ceil(N / block))
+        least = 2.0 ** -53 * (96 * m0 + 256 * m2 + chain * (m2 + 2.0 ** -9) + 64 * added)
+        fine = m0 + m2 < 0.99 * 2 ** 22
+        assert (error >= joined[-1].error + (1 - 1e-9) * least)[fine].all()
+        assert (error == math.inf)[m0 + m2 > 1.01 * 2 ** 22].all()
+        cases, large = cases + fine.sum(), large + (~fine).sum()
+    assert cases > 20 and large > 0
+
+
 def test_a_leaf_of_long_orbits(np, texts, generator, monkeypatch):
     """A leaf of the proof from 0.01391 to 0.0140 over its second point: one piece, in doubles and
     in integers, where models of first order took more than 4,096; and the bound is near the truth.
@@ -2436,6 +2492,40 @@ def test_lockstep_boxes_cover_their_cells(np, texts, generator):
                     + mp.mpf(10) ** -50
             kinds += f != check.IDENTITY
     assert kinds > 20 and shifted > 20
+
+
+def test_lockstep_corners(np, texts, generator, monkeypatch):
+    """Corners of cells, wide or narrow, are those of the box within W and the error of x[1]: also
+    of a wave that a claim names 16 times, and of parts that have 64 bits and signs."""
+    monkeypatch.setattr(check, "in_turns", lambda units: (units,) * 3)
+    claim = claim_of(with_tree(texts["trig274"], "P"))
+    for _ in range(100):
+        def some(count, size=1):
+            size *= Fraction(10) ** generator.choice((0, -3, -10, -20, -40, -400))
+            return tuple([near(generator) * size for _ in range(count)])
+
+        amplitudes = some(generator.choice((1, 16)))
+        parts = generator.choice((some(3), tuple([Fraction(n, 10 ** 11) for n in (7, -1, 0)])))
+        claim = dataclasses.replace(
+            claim, waves=tuple([check.Wave((1, 0), Fraction(1, 3), p, parts) for p in amplitudes]),
+            centre=some(2, 9), half=tuple(map(abs, some(2))), frame=generator.choice(FRAMES),
+            shifts=generator.choice(((), (some(2), some(2), some(2)))))
+        if not claim.examined:
+            continue
+        fast, cell = check.Lockstep([claim]), random_cell(generator, claim, 52)
+        (units, _, _), h, W, X, columns, off = fast.box(*cells_of([cell]), np.zeros(1, int))
+        corner = [generator.choice((-1, 1)) for _ in range(5)]
+        along = [Fraction(2 * i + 1 + e, 1 << k) - 1 for i, k, e in zip(*cell, corner)]
+        turns = in_frame(claim.frame, [c + v * t + s for c, v, t, s in zip(
+            claim.centre, claim.half, along, moved_by(claim, along))])
+        w, signs = fast.shape.at[0], [corner[axis] for axis in fast.axes]
+        amplitude = real(sum([wave.at(along[2:]) for wave in claim.examined]))
+        pairs = [(amplitude, units[w, 0], check.AMPLITUDE_BITS, h[w], W[w, 0])]
+        pairs += zip([mp.pi * real(x) for x in turns], X[:, 0], (64, 64), columns, off[:, 0])
+        for true, found, bits, moved, error in pairs:
+            gap = true - 2 * mp.pi * int(found) / mp.mpf(2) ** bits - sum(
+                [mp.mpf(float(x)) * e for x, e in zip(moved[:, 0], signs)])
+            assert abs(gap - 2 * mp.pi * mp.nint(gap / (2 * mp.pi))) <= error
 
 
 def test_lockstep_xstar(np, texts, generator):
