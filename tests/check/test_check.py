@@ -1507,6 +1507,15 @@ def test_sincos(bits, generator):
         fixed.sincos(1 << bits + 42)
 
 
+def test_taylor_polynomials_of_small_angles():
+    """They are within 4 units for angles up to 1/128, whichever term is the last."""
+    for bits in range(64, 180):
+        divisors, one = check.Fixed._divisors(bits), mp.mpf(2) ** bits
+        for r in (1 << bits - 7, -1 << bits - 7, 100 + 5 ** 9 << bits - 30):
+            c, s = check.Fixed._small(r, bits, divisors)
+            assert abs(c - mp.cos(r / one) * one) < 4 and abs(s - mp.sin(r / one) * one) < 4
+
+
 def test_roots_and_eigenvalues(generator):
     one = 1 << 64
     for _ in range(4000):
