@@ -64,12 +64,14 @@ def import_numpy_if_sound():
     import numpy as np
     *operands, exact = sums_and_products()
     x, y = map(np.array, operands)
-    one = np.ones_like(x)
+    one, high = np.ones_like(x), np.array([1 << 62], np.int64)
     with np.errstate(all="ignore"):
         return [found.tolist() for found in (x + y, x - y, x * y, x / y, x - one)] == exact \
             and (np.array([2.0 ** -1022] * 9) / 2 * 2).tolist() == [2.0 ** -1022] * 9 \
             and np.rint(np.array([0.5, 1.5, -2.5, 0.49, 7.0])).tolist() == [0, 2, -2, 0, 7] \
-            and (np.array([[3, -1]], np.int64) @ [[1 << 62], [1 << 62]]).tolist() == [[-1 << 63]]
+            and (np.array([[3, -1]], np.int64) @ [[1 << 62], [1 << 62]]).tolist() == [[-1 << 63]] \
+            and [x.tolist() for x in (high * 3, high + high, high << 1)] \
+            == [[-1 << 62], [-1 << 63], [-1 << 63]]
 
 
 def whole(turns):

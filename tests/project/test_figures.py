@@ -116,7 +116,8 @@ def test_tori_are_those_of_the_tables():
             row = rows[map_, re.search(r"0\.[0-9]+", name)[0]]
             if release == row["release"]:
                 assert modes.replace(",", "") == row["parts"], name
-                assert float(seconds.replace(",", "")) == pytest.approx(float(row["seconds"]), rel=0.03), name
+                assert float(seconds.replace(",", "")) == pytest.approx(
+                    float(row["seconds"]), rel=0.03), name
                 shown += 1
     assert shown == 5
     for row in table("chart-bound"):
