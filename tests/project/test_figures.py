@@ -119,7 +119,7 @@ def test_tori_are_those_of_the_tables():
                 assert float(seconds.replace(",", "")) == pytest.approx(
                     float(row["seconds"]), rel=0.03), name
                 shown += 1
-    assert shown == 5
+    assert shown == 6
     for row in table("chart-bound"):
         if row["what"] == "torus":
             assert row["seconds"] == rows["line", row["epsilon"]]["seconds"]
