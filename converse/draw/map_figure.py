@@ -77,7 +77,7 @@ def _fill(region_map, axes, tori):
     if tori := list(filter(region_map.in_plane, tori)):
         places = np.array(sorted((float(p[horizontal]), float(p[vertical])) for p in tori))
         axes.plot(*places.T, "o", color=plot.GREEN, markersize=3.5,
-                  label="a torus is proved there")
+                  label="a torus is proved there", clip_on=False)
     if region_map.region == "a=b":
         ends = np.array([0, 0.03]) * float(LINE)
         axes.plot(ends, 2 * ends, "--", color=plot.DARK, linewidth=0.6)
