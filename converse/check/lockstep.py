@@ -39,7 +39,7 @@ DETERMINANT_MIN = 2.0 ** -60            # of d; smaller ones end a lane: (C15)
 
 # Of the effort, on which no theorem rests; chosen by the table in docs/proofs/checker.md.
 BATCH, BATCH_MIN = 1024, 16             # prisms in lockstep, at first and where orbits are long
-MEMORY_MAX = 1 << 31                    # bytes of the sites of a batch
+MEMORY_MAX = 1 << 31                    # bytes of the sites of a batch; twice that in all processes
 LENGTH_MARGIN = 1.5                     # by which orbits of a batch may be longer than the last's
 BLOCK = 1 << 13                         # sites times lanes that are added up together
 EARLY_TRY_GROWTH = 16                   # of a reach while its lane becomes four times as long
@@ -394,11 +394,11 @@ class Prisms:
     """Prisms followed and bounded in lockstep; all arrays end with the axis of lanes, those ahead
     before those back."""
 
-    def __init__(self, box, shape, xstar, l, penalties=SITE_PENALTIES[0]):
+    def __init__(self, box, shape, xstar, l, penalties=SITE_PENALTIES[0], memory=MEMORY_MAX):
         """The box: amplitudes as in_turns() gives them, h (by wave and symbol) and W of the waves,
         X[1], its columns (by coordinate and symbol, of which the last two span the parallelogram)
         and the error of x[1], in radians; the Shape; x*; l; and penalties (see SITE_PENALTIES).
-        X[1] and x* are in units of 2^-64 turns."""
+        X[1] and x* are in units of 2^-64 turns.  memory: bytes that the sites may take."""
         turns, h, W, x, columns, off = box
         self.size, self.shape = x.shape[1], shape
         self.turns = [self.both(part, part) for part in turns]
@@ -419,7 +419,7 @@ class Prisms:
         self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, off)
         self.first = self.both(x, start), self.both(columns, blank), self.both(off, rounding)
         self.sites, self.excluded = [], np.zeros(self.size, bool)  # which are not followed further
-        self.sites_max = MEMORY_MAX // (2 * self.size * shape.site_bytes)
+        self.sites_max = memory // (2 * self.size * shape.site_bytes)
         self.begin()
 
     def bound_roundings(self):
@@ -803,7 +803,7 @@ class Lockstep:
         wave."""
         if not all(claim.examined for claim in claims):
             raise ValueError("no wave: orbits without end")
-        self.batch = BATCH
+        self.batch, self.memory = BATCH, MEMORY_MAX
         # The axes of the symbols: of the parameters that move anything in doubles, and of v0, v1.
         self.axes = sorted({2 + m for claim in claims for wave in claim.examined
                             for m, part in enumerate(wave.parts) if float(part)}    # or underflow
@@ -907,7 +907,7 @@ class Lockstep:
         long for a batch of this size.  halved: how often each cell was halved along each axis."""
         with np.errstate(all="ignore"):
             prisms = Prisms(self.box(index, cuts, number), self.shape, self.xstar[:, number], l,
-                            penalties)
+                            penalties, self.memory)
             for ready in prisms.follow():
                 if not ready:
                     return None

@@ -225,6 +225,8 @@ def check_leaves(problems, chosen, done, jobs, bar):
             fewest = 4 * fewest         # one chunk: the last batches of each are small and dear
         size = min(max(len(chosen) // (CHUNKS * jobs), fewest), most)
     jobs = max(min(jobs, -(-len(chosen) // size)), 1)       # no more processes than chunks
+    if problems.fast:
+        problems.fast.memory = 2 * problems.fast.memory // max(jobs, 2)
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
     try:
         with Bar(work() if bar else (), len(chosen)) as progress, \

@@ -2718,6 +2718,21 @@ def test_long_orbits_are_followed_fewer_at_a_time(np, root, tmp_path, monkeypatc
     assert refused is None and fast.batch < check.BATCH and min(pieces) == 1
 
 
+def test_processes_share_the_memory_of_two(np, root, tmp_path, monkeypatch):
+    prove(read_input(root / "inputs" / "standard-63-64.in"), method="loewner").save(tmp_path / "a")
+    monkeypatch.setattr(check, "FAST_CHUNK", (50, check.FAST_CHUNK[1]))     # 135 leaves
+    check_all, seen = check.check_all, []
+
+    def record(chunks, jobs, problems):
+        seen.append((jobs, problems.fast.memory))
+        return check_all(chunks, 1, problems)
+
+    monkeypatch.setattr(check, "check_all", record)
+    for jobs in (1, 2, 9):
+        assert check.verify(tmp_path / "a", jobs=jobs)
+    assert seen == [(1, check.MEMORY_MAX), (2, check.MEMORY_MAX), (3, 2 * check.MEMORY_MAX // 3)]
+
+
 @pytest.mark.skipif(TORTURE == 1, reason="minutes; make torture has it")
 def test_the_standard_map_nearest_to_break_up(np, root, tmp_path):
     """Orbits of 18,605 points: whole, and in doubles alone, where the integers would take days."""
