@@ -786,7 +786,8 @@ class Prisms:
         share = share / share.sum(axis=0)
         moved = np.stack([sum([np.abs(x) for key, x in form.items() if k in key])
                           for k in range(self.known)])
-        more = error + moved.sum(axis=0) / 64       # so that symbols that move the ends count
+        # The second term: so that symbols that move the ends count.
+        more = np.where(error < math.inf, error, 0) + moved.sum(axis=0) / 64
         return value + (most + error), np.where(value < 0, moved + more * share, share)
 
 

@@ -2380,6 +2380,26 @@ def test_masses_of_roundings(np, generator, monkeypatch):
     assert cases > 20 and large > 0
 
 
+def test_cuts_are_chosen_without_a_bound(np, generator, monkeypatch):
+    """Where the masses are too large for a bound, nothing is excluded, and the polynomial decides
+    which symbol matters."""
+    cases = 0
+    for _ in range(4):
+        prisms = random_prisms(np, generator)
+        with np.errstate(all="ignore"):
+            assert all(prisms.follow())
+            usual, blame = prisms.bound()
+            monkeypatch.setattr(check, "MASS_MAX", 0)
+            bound, found = prisms.bound()
+            monkeypatch.undo()
+        good = np.isfinite(usual)
+        assert np.isinf(bound).all() and np.isfinite(found[:, good]).all()
+        near = good & (abs(blame - found).max(axis=0) < 1e-3 * blame.max(axis=0))
+        assert (blame.argmax(axis=0) == found.argmax(axis=0))[near].mean() > 0.9
+        cases += near.sum()
+    assert cases > 10
+
+
 def test_a_leaf_of_long_orbits(np, texts, generator, monkeypatch):
     """A leaf of the proof from 0.01391 to 0.0140 over its second point: one piece, in doubles and
     in integers, where models of first order took more than 4,096; and the bound is near the truth.
