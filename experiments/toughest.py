@@ -40,10 +40,10 @@ FIXED = 1e-3                            # the other criterion: an exponent, what
 SPREAD = 0.7548776662466927, 0.5698402909980532
 # Invariant tori were seen by Fourier series near this vector up to TORI.
 NEAR = 0.295401276 + 0.003327283, 0.295401276 - 0.003327283
-TORI = 0.0121
+TORI = 0.0122
 NO_TORI = 0.01389, 0.0272               # for every larger eps: by this program, and in 1989
 TORUS_UP_TO = 0.010                     # a torus is proved for every eps from 0 (tori.md)
-TORUS_AT = 0.011, 0.0115, 0.0120, 0.0121        # and for these
+TORUS_AT = 0.011, 0.0115, 0.0120, 0.0121, 0.0122    # and for these
 TOP = 0.0335                            # of the picture
 CHAPTER = ((1432, 1897), 2513), ((377, 2330), 3770)
 K_C = 0.971635406                       # where the standard map's golden torus breaks up (Greene)

@@ -22,7 +22,7 @@ MARKER = {"markersize": 7, "markerfacecolor": "white", "markeredgecolor": "black
 MARKED_POINTS = (                       # of the dashed line, a = b = c/2
     (0.0272, "o", "\u03b5 \u2265 0.0272: no torus (1989)"),
     (0.01389, "*", "\u03b5 \u2265 0.01389: no torus"),
-    (0.0121, "s", "\u03b5 = 0.0121: a torus"))
+    (0.0122, "s", "\u03b5 = 0.0122: a torus"))
 SIZE = 6.4, 5.0                         # inches
 SAMPLES = 120                           # of the angles, and of the directions of a side
 AT_ONCE_LEVEL = 4 / 3                   # of B - 2, above which Mather's criterion proves
