@@ -33,7 +33,7 @@ FORCE_ROUNDING = UNIT / 16              # of a wave's force, divided by its ampl
 AMPLITUDE_BITS, AMPLITUDE_UNIT = 100, 2.0 ** -100       # of amplitudes, in turns: (C9)
 UNDERFLOW_MARGIN = 2.0 ** -200          # added to sizes and divisors that may underflow
 FAST_SIZE_MAX = 2.0 ** 10               # of amplitudes, x*, regions (in turns) and frames
-FAST_CUTS_MAX = 52                      # cuts of an axis, so that cells are exact in doubles
+FAST_CUTS_MAX = 52                      # cuts of an axis; cells are wider than 2^-64 turns
 REACH_MAX = 1.0                         # of a wave at a site, in radians: (C19)
 DETERMINANT_MIN = 2.0 ** -60            # of d; smaller ones end a lane: (C15)
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from .failures import NotConfirmed
 
 MAX_TERMS = 1 << 24                     # of a series
-MAX_DIGITS = 1 << 30                    # bits of all coefficients of a series
+MAX_DIGITS = 1 << 30                    # of all coefficients of a series, in decimal digits
 FINE = 64                               # bits that norms have beyond the coefficients
 TEXTS = 1 << 14                         # Numbers that are written as text at a time.
 PARTS = 32                              # Products are computed up to a multiple of limit/PARTS.
