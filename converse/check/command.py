@@ -12,6 +12,7 @@ from .limits import INTERRUPTED, UNUSABLE, VERIFIED
 from .progress import complain, reason
 from .run import verify
 from .signals import interruptible
+from .state import is_shard
 from .version import __version__
 
 
@@ -28,10 +29,10 @@ def positive_int(text):
 
 def shard(text):
     found = re.fullmatch("([0-9]{1,6}|all)/([0-9]{1,6})", text, re.ASCII)
-    first, count = found.groups() if found else ("1", "0")
-    if int(count) < 1 or first != "all" and not 1 <= int(first) <= int(count):
+    found = found and tuple([x if x == "all" else int(x) for x in found.groups()])
+    if not found or not is_shard(*found):
         raise argparse.ArgumentTypeError("'%.40s' is not I/N with 1 <= I <= N, nor all/N" % text)
-    return first if first == "all" else int(first), int(count)
+    return found
 
 
 def parser():

@@ -17,7 +17,7 @@ from .portrait import FIRST_LINE as PORTRAIT
 from .portrait import Portrait, portrayed, read_portrait
 from .progress import Bar, reason
 from .proof_file import MAGIC, read_proof
-from .state import state_of
+from .state import is_shard, state_of
 from .torus_file import TORUS_MAGIC, TorusClaim, read_torus
 from .tree import check_mirror_images, check_tree
 from .words import claimed, not_excluded, report
@@ -135,8 +135,8 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
     exact
         Whether to use integers alone, as without numpy.
     shard
-        (i, n): check only the leaves i, i + n, i + 2n, ..., and keep the result in the file
-        STATE.i-of-n.  ("all", n): check no leaf, and put the n results together.
+        (i, n), 1 <= i <= n: check only the leaves i, i + n, i + 2n, ..., and keep the result in the
+        file STATE.i-of-n.  ("all", n): check no leaf, and put the n results together.
 
     Returns
     -------
@@ -146,12 +146,14 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
     Raises
     ------
     ValueError
-        jobs or sample is below 1.
+        jobs or sample is below 1, or there is no such shard.
     Rejected, NotConfirmed, Unusable
         The theorem is not verified; the text says why.
     """
     if jobs < 1 or sample is not None and sample < 1:
         raise ValueError("jobs and sample are 1 or more")
+    if shard is not None and not is_shard(*shard):
+        raise ValueError("shard is (i, n) with 1 <= i <= n, or ('all', n) with n >= 1")
     if sample is not None and (state is not None or shard is not None):
         raise Unusable("a spot check keeps no state; give --sample or --state")
     if shard is not None and state is None:
@@ -164,9 +166,9 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
         from .tori import verify_torus  # here, as its modules would delay all other checks
         with Bar((file,) if bar else (), 1) as progress:
             lines, facts = verify_torus(file, progress.tell, jobs)
-        return Result(VERIFIED, "verified", "\n".join([*lines, "SHA-256 : " + file.sha256]), facts)
+        return verdict(VERIFIED, lines, file, len(facts), len(file.pieces), facts)
     problems, theorem_of = problems_of(file)
-    total = sum([claim.counts["proved"] for claim in problems.claims])
+    total = due = sum([claim.tree.count("P") for claim in problems.claims])
     done = state_of(state, file.sha256, total, shard)
     earlier = done.confirmed
     chosen = done.leaves[earlier:]
@@ -179,11 +181,11 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
                            problems.criterion(0) if theorem_of is claimed else None,
                            done.confirmed, done.pieces, done.doubles)
     if sample is not None:
-        status = SPOT_CHECK
+        status, due = SPOT_CHECK, len(chosen)
         lines[:1] = ["Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
                      % (done.confirmed, total), "What is claimed and NOT verified :"]
     elif done.shard[1] > 1:
-        status = PART
+        status, due = PART, len(done.leaves)
         lines[:1] = ["Shard %d of %d, %d of %d proved leaves: none of them fails."
                      % (*shard, done.confirmed, total),
                      "What is claimed, and NOT verified until all shards are put together :"]
@@ -192,7 +194,18 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
                                     % (earlier, total, done.earlier_runs))
     if earlier:
         lines += ["Of these, by %s whose state was believed : %d" % (done.earlier_runs, earlier)]
-    return Result(status, VERDICTS[status], "\n".join([*lines, "SHA-256 : " + file.sha256]))
+    return verdict(status, lines, file, done.confirmed, due)
+
+
+def verdict(status, lines, file, confirmed, due, facts=()):
+    """The Result, with this status only if as many leaves P, or pieces of a certificate, are
+    confirmed as are due: all of the file, unless the status is that of a spot check or a shard.
+
+    Raises RuntimeError otherwise, as the checker is at fault.
+    """
+    if confirmed != due:
+        raise RuntimeError("%d of %d parts of the proof are confirmed" % (confirmed, due))
+    return Result(status, VERDICTS[status], "\n".join([*lines, "SHA-256 : " + file.sha256]), facts)
 
 
 def problems_of(file):

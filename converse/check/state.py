@@ -41,6 +41,11 @@ def own_digest():
     return found.hexdigest()
 
 
+def is_shard(i, count):
+    """Is it one of count shards, or the sum ("all") of at least one?"""
+    return count >= 1 and (i == "all" or 1 <= i <= count)
+
+
 def state_of(path, sha256, total, shard):
     """The State of a proof file or map with total leaves P.
 

@@ -1418,6 +1418,31 @@ def test_results_and_exceptions(texts, deep, tmp_path):
             check.verify(path, **wrong)
 
 
+@pytest.mark.parametrize("shard", [(2, 1), (7, 1), (1, -1), (5, -3), (0, 2), (3, 2), (1, 0),
+                                   ("all", 0), ("all", -1)])
+def test_shards_that_do_not_exist_are_refused(texts, tmp_path, shard):
+    path, state = tmp_path / "x", tmp_path / "state"
+    path.write_text(texts["trig278"], encoding="utf-8")
+    with pytest.raises(ValueError, match="1 <= i <= n"):
+        check.verify(path, state=str(state), shard=shard)
+    assert os.listdir(tmp_path) == ["x"]
+
+
+@pytest.mark.parametrize("options", [(), ("--sample", "1"), ("--state", "state"),
+                                     ("--state", "state", "--shard", "1/1"),
+                                     ("--state", "state", "--shard", "1/2")])
+@pytest.mark.parametrize("kind", ["proof", "part", "map"])
+def test_nothing_is_verified_if_a_leaf_is_not_confirmed(texts, maps, run, tmp_path, monkeypatch,
+                                                        kind, options):
+    """Whatever the reason, as here that the leaves are not looked at."""
+    text = {"proof": texts["trig278"], "part": part_of(texts["trig274"]),
+            "map": map_text(maps["b=0"])}[kind]
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(check, "check_leaves", lambda *_: None)
+    status, out, err = run(text, *options)
+    assert (status, out) == (2, "") and "the checker failed (RuntimeError: 0 of " in err
+
+
 # ---- where tori exist there is no theorem
 
 @pytest.mark.parametrize("a", ["0", "0.0011", "0.011", "0.05", "0.11", "0.15"])

@@ -117,6 +117,12 @@ def test_large_coordinates_of_the_rotation_do_not_make_its_decimals_false(run, d
     assert "t = %s..." % exact in out
 
 
+def test_a_certificate_is_not_verified_if_a_piece_is_not(run, monkeypatch):
+    monkeypatch.setattr(tori, "verify_torus", lambda *_: (["Verified :"], ()))
+    status, out, err = run(sealed(BODY))
+    assert (status, out) == (2, "") and "the checker failed (RuntimeError: 0 of 1 parts" in err
+
+
 def test_quiet_says_nothing(run, monkeypatch):
     monkeypatch.setattr(check, "QUIET_SECONDS", -1)
     assert run(sealed(BODY), "--quiet") == (0, "", "")

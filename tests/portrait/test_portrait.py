@@ -191,6 +191,12 @@ def test_leaf_that_is_not_proved_is_not_confirmed(strips, tmp_path, monkeypatch)
         check.verify(tmp_path / "forged")
 
 
+def test_portrait_is_not_verified_if_no_leaf_is_looked_at(strips, monkeypatch):
+    monkeypatch.setattr(check.run, "check_leaves", lambda *_: None)
+    with pytest.raises(RuntimeError, match="0 of [0-9]+ parts of the proof"):
+        check.verify(strips[1])
+
+
 def test_regions_must_hold_the_successors_for_all_of_the_strip(strips):
     """Each end of each region counts: one that is shorter by a little is refused."""
     portrait, path = strips
