@@ -243,7 +243,7 @@ class _Run:
         counts = self.proof.counts if self.search is None else self.search.counts
         problem = self._tree.problem
         return self.number == 0 and counts.max_NTsteps >= LONG and \
-            not (problem.is_flat and not problem.parts)
+            not (problem.is_flat and not has_width(problem))
 
     def _is_large(self):
         """Has a tree of a single value more prisms than those that show a starting point to be

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from converse import ConverseError, Problem, Proof, Settings, check, prove, read_input
+from converse import ConverseError, Problem, Proof, Settings, StandardMap, check, prove, read_input
 from converse.check.claim import Claim, Wave
 from converse.check.criterion import Criterion
 from converse.check.links import displacement
@@ -578,6 +578,20 @@ def test_near_where_links_end(epsilon, parts):
     proof = prove(line(epsilon), method="loewner")
     assert proof.no_tori and len(proof.parts) == parts and proof.counts.proved < 100000
     assert not any(part.problem.shifts for part in proof.parts)
+
+
+@pytest.mark.parametrize("half_width", ["0", "0.0001"])
+def test_long_orbits_of_a_single_map_of_one_angle_are_no_reason_to_look_for_other_points(
+        monkeypatch, half_width):
+    """All orbits are long near the last circle.  For a range another point may do better."""
+    asked = []
+    monkeypatch.setattr(run, "LONG", 15)
+    monkeypatch.setattr(run, "plan", lambda *_: asked.append(None))
+    k, h = Fraction("1.02"), Fraction(half_width)
+    for source in StandardMap(k=(k - h, k + h)), Problem(MuldoonMap((k - h, k + h), 0, 0)):
+        proof = prove(source)
+        assert proof.no_tori and proof.counts.max_NTsteps >= 15
+    assert len(asked) == (2 if h else 0)
 
 
 # ---- the prisms of the core
