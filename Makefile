@@ -5,7 +5,9 @@ PYTHON = python3
 VENV = .venv
 SANITIZED = .venv-sanitize
 SOURCES = $(wildcard csrc/* csrc/*/* converse/*.py converse/*/*.py) setup.py pyproject.toml MANIFEST.in
-SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g -O1
+# -UNDEBUG: Python's own flags turn assertions off.
+SANITIZE = -UNDEBUG -fsanitize=address,undefined -fno-sanitize-recover=undefined \
+    -fno-omit-frame-pointer -g -O1
 
 # Two processes, for as many cores; who is done first takes of the other's tests.
 TWO = -n 2 --dist worksteal

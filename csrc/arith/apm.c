@@ -2,6 +2,7 @@
 #include "apm.h"
 #include "guard.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <limits.h>
 #include <math.h>
@@ -25,6 +26,7 @@ _Static_assert(sizeof(unsigned long) == 8, "apm assumes 64-bit words");
    for the long ones. */
 static void shift_up(mpz_t r, const mpz_t x, long n)
 {
+    assert(n >= 0);
     if (n > 8 * WORD_DIGITS) {
         mpz_t p;
         mpz_init(p);
@@ -71,6 +73,7 @@ static void divide_word(mpz_t r, const mpz_t x, unsigned long y, apm_round_t dir
    division. */
 static void shift_down(mpz_t r, const mpz_t x, long n, apm_round_t dir)
 {
+    assert(n >= 0);
     if (n > 4 * WORD_DIGITS) {
         mpz_t p;
         mpz_init(p);

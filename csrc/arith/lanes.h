@@ -6,6 +6,7 @@
 #ifndef CONVERSE_LANES_H
 #define CONVERSE_LANES_H
 
+#include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -79,7 +80,11 @@ INLINE vec larger(vec x, vec y) { return pick(TRUTH(x > y) | TRUTH(x != x), x, y
 /* A mask may hold an integer below 2^31 in each lane.  extreme: the largest of these (way > 0) or
    the least (way < 0) over the lanes that are active; 0 if no lane is. */
 INLINE int number(const mask *m, int k) { return (int)((const uint64_t *)m)[k]; }
-INLINE void put_number(mask *m, int k, int value) { ((uint64_t *)m)[k] = (uint64_t)value; }
+INLINE void put_number(mask *m, int k, int value)
+{
+    assert(value >= 0);
+    ((uint64_t *)m)[k] = (uint64_t)value;
+}
 INLINE void put_truth(mask *m, int k, int value) { ((uint64_t *)m)[k] = value ? UINT64_MAX : 0; }
 INLINE int extreme(mask active, mask m, int way)
 {

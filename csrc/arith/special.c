@@ -11,8 +11,10 @@
 #include "special.h"
 #include "guard.h"
 
+#include <assert.h>
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 
 /* r += scale * arctan(1/n) in ulps of 2^-w, n >= 5, |scale| <= 16; off by less than 2w ulps.
    Every quotient is truncated: a power is short by less than 1/(1 - 1/25) < 2 ulps, a term by less
@@ -21,6 +23,8 @@
 static void add_arctan(mpz_t r, unsigned long n, long scale, mp_bitcnt_t w)
 {
     mpz_t power, term;
+
+    assert(n >= 5 && labs(scale) <= 16);
     mpz_inits(power, term, NULL);
     mpz_set_si(power, scale);
     mpz_mul_2exp(power, power, w);
@@ -84,6 +88,7 @@ static void plan(trig_t *trig)
     int e;
 
     trig->halvings = 1 + (mp_bitcnt_t)(sqrt((double)w) / 5.0);
+    assert(trig->halvings >= 2);
     for (trig->terms = 0; bits < w; trig->terms++) {
         const double n = (double)trig->terms;
         frexp((2.0 * n + 3.0) * (2.0 * n + 4.0), &e);
@@ -166,6 +171,8 @@ static void versine(trig_t *trig, mp_bitcnt_t j, mp_bitcnt_t b)
     mpz_t *const z = trig->power;
     unsigned long c = 1;
 
+    assert(mpz_sizeinbase(trig->t, 2) <= trig->w - j);
+    assert(2 * j + (b - trig->w - j) >= 2 * trig->halvings);
     mpz_mul(z[1], trig->t, trig->t);
     mpz_tdiv_q_2exp(z[1], z[1], trig->w - j);
     for (unsigned long i = 2; i <= trig->row; i++) {
@@ -196,6 +203,7 @@ static void versine(trig_t *trig, mp_bitcnt_t j, mp_bitcnt_t b)
 /* r = +-x 2^-w to the nearest multiple of 10^-dp; x is at least 0 and at most 2^w. */
 static void to_decimal(apm_t r, const mpz_t x, int negative, const trig_t *trig)
 {
+    assert(mpz_sgn(x) >= 0 && mpz_sizeinbase(x, 2) <= trig->w + 1);
     mpz_mul(r->mant, x, trig->one);
     mpz_add(r->mant, r->mant, trig->half);
     mpz_tdiv_q_2exp(r->mant, r->mant, trig->w);
@@ -224,6 +232,7 @@ static int reduced(trig_t *trig, const apm_t x, int *negative)
        the mantissa, is less than 1/4 ulp; the second, since |x| 2/pi < 2^big, less than 1/3; and
        the shift takes less than 1. */
     set_turn(trig, x->exp, w + mpz_sizeinbase(x->mant, 2) + 2);
+    assert(trig->turn_bits >= w);
     mpz_mul(trig->t, x->mant, trig->turn);
     mpz_fdiv_q_2exp(trig->t, trig->t, trig->turn_bits - w);
 
@@ -236,6 +245,7 @@ static int reduced(trig_t *trig, const apm_t x, int *negative)
     mpz_abs(trig->t, trig->t);
     mpz_mul(trig->t, trig->t, trig->half_pi);
     mpz_tdiv_q_2exp(trig->t, trig->t, trig->half_pi_bits);
+    assert(mpz_sizeinbase(trig->t, 2) <= w);
     return quadrant;
 }
 

@@ -52,8 +52,16 @@ INLINE mask sign_of(mask x) { return -(x >> 63); }
 /* An integer below 2^52 as a double, and a double from 0 to 2^52, rounded, as an integer: 2^52 and
    such a number is a double whose last bits are the number. */
 #define ONES_AT_52 UINT64_C(0x4330000000000000)
-INLINE vec double_of(mask x) { return vec_of(x | ONES_AT_52) - 0x1p52; }
-INLINE mask integer_of(vec x) { return bits_of(x + 0x1p52) - ONES_AT_52; }
+INLINE vec double_of(mask x)
+{
+    assert(!any(x >> 52));
+    return vec_of(x | ONES_AT_52) - 0x1p52;
+}
+INLINE mask integer_of(vec x)
+{
+    assert(!any(~(TRUTH(x >= 0.0) & TRUTH(x <= 0x1p52))));
+    return bits_of(x + 0x1p52) - ONES_AT_52;
+}
 
 /* 2^-62 s is within TURNS_ERROR of the sine, 2^-62 c of the cosine, in two's complement; the sizes
    of s and c are 2^62 at most.

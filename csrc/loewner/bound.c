@@ -88,6 +88,7 @@ static size_t used_of(const batch *w)
 /* Sites are summed in blocks of so many, and then the blocks.  The roundings of the second sum are
    summed separately, so the error of a sum grows with BLOCK, and not with the number of sites. */
 enum { BLOCK = 16 };
+_Static_assert(MOST_WAVES <= 16 && MAX_POINTS / BLOCK + 2 < 1 << 14, "bound_with counts these");
 
 /* Adds the vectors of a block's sums to the total, and begins the block anew. */
 static void add_block(vec total[], vec lost[], vec block[], size_t vectors)
@@ -464,6 +465,7 @@ static void bound_with(batch *w, mask active, int signs)
 
     for (int k = 0; k < LANES; k++) {
         const int sites = number(&w->until, k) - number(&w->since, k) + 1;
+        assert(!holds(&active, k) || (2 <= sites && sites <= MAX_POINTS));
         put_at(&each, k, 0x1p-53 * (32.0 * (sites < BLOCK ? sites : BLOCK) + 128.0));
     }
     sum_up(w, &t, active);

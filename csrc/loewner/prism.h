@@ -29,6 +29,7 @@
 #ifndef CONVERSE_PRISM_H
 #define CONVERSE_PRISM_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdlib.h>
 
@@ -88,7 +89,11 @@ typedef struct {
     int out_of_memory;
 } batch;
 
-INLINE point *site_of(const batch *w, int site) { return w->points + (site - w->lowest); }
+INLINE point *site_of(const batch *w, int site)
+{
+    assert(w->lowest <= site && site < w->lowest + w->room);
+    return w->points + (site - w->lowest);
+}
 
 static const double TINY = 0x1p-800;
 

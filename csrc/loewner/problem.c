@@ -1,4 +1,5 @@
 /* problem.c - what belongs to all prisms of a problem, and the engine that is to try them. */
+#include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -50,6 +51,8 @@ static int128 times_middle(int128 x, const cv_cell *cell, int axis)
     const int64_t cells = INT64_C(1) << cuts, middle = 2 * (int64_t)cell->index[axis] + 1 - cells;
     const int128 rest = x & ((INT64_C(1) << lower) - 1);
 
+    assert(-((int128)1 << BITS) < x && x < (int128)1 << BITS && cuts <= CV_MAX_CUTS);
+    assert(-cells < middle && middle < cells);
     return ((x >> lower) * middle + (rest * middle >> lower)) >> (cuts - lower);
 }
 
@@ -102,6 +105,7 @@ static void set_amplitudes(const loewner *w, const cv_cell *cell, const double p
             c->part[i][m] = w->part[i][m] * part[2 + m];
             size += fabs(c->part[i][m]);
         }
+        assert(-((int128)1 << 62) < force && force < (int128)1 << 62);
         c->force[i] = (int64_t)force;
         const double high = (double)c->force[i], low = (double)(c->force[i] - (int64_t)high);
         c->p[i] = high * unit;
@@ -219,9 +223,11 @@ static int128 whole(loewner *w, const apm_t x, const apm_t scale, int coarse)
     apm_set_d(power, 0.5);
     apm_add(number, number, power);
     apm_floor(number, number);
+    assert(number->exp >= 0);
     if (apm_order(number) <= ORDER) {
         mpz_ui_pow_ui(z, 10, (unsigned long)number->exp);
         mpz_mul(z, z, number->mant);
+        assert(mpz_sizeinbase(z, 2) <= BITS);
         mpz_export(words, NULL, -1, sizeof *words, 0, 0, z);
     } else {
         w->usable = 0;

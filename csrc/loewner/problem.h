@@ -2,6 +2,8 @@
 #ifndef CONVERSE_PROBLEM_H
 #define CONVERSE_PROBLEM_H
 
+#include <assert.h>
+
 #include "arith/turns.h"
 #include "loewner.h"
 
@@ -60,6 +62,7 @@ struct loewner {
 /* The place of e_k e_l among the products of the symbols, row by row with k <= l. */
 static inline int pair(int columns, int k, int l)
 {
+    assert(0 <= k && k < columns && 0 <= l && l < columns);
     return k <= l ? k * (2 * columns - k - 1) / 2 + l : l * (2 * columns - l - 1) / 2 + k;
 }
 

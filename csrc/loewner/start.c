@@ -211,22 +211,24 @@ static int are_parallel(const waves *v, int q[2])
 
 /* Improves x for waves with k = m q.  The second variation along q of x is that of the angle q.x
    with waves (m, 0) of |q|^2 the amplitude. */
-static void improve_along(orbits *o, double excess, const int q[2], double x[2])
+static void improve_along(const orbits *o, double excess, const int q[2], double x[2])
 {
     const waves *const v = o->v;
     const int size = q[0] * q[0] + q[1] * q[1];
     const double along = q[0] * x[0] + q[1] * x[1];
     double y[2] = { along, 0.0 }, p[MOST_WAVES];
     int k[MOST_WAVES][2] = { { 0 } };
+    const waves of_angle = { v->n, (const int (*)[2])k, v->phase, p };
+    orbits of_it = *o;
 
     for (int j = 0; j < v->n; j++) {
         k[j][0] = (v->k[j][0] * q[0] + v->k[j][1] * q[1]) / size;
         p[j] = v->p[j] * size;
     }
-    o->v = &(waves){ v->n, (const int (*)[2])k, v->phase, p };
-    o->flat = 1;
-    o->step = FINEST_STEP;
-    improve(o, excess, 0, y);
+    of_it.v = &of_angle;
+    of_it.flat = 1;
+    of_it.step = FINEST_STEP;
+    improve(&of_it, excess, 0, y);
     for (int i = 0; i < 2; i++)
         x[i] += (y[0] - along) * q[i] / size;
 }

@@ -10,6 +10,8 @@
    The right side is convex in t; W grows with these coefficients in the Loewner order, and trace
    and largest eigenvalue are convex and grow with W.  So over a rectangle about v their bounds are
    largest at a corner.  docs/proofs/argument.md, section 4. */
+#include <assert.h>
+
 #include "model/patch.h"
 #include "model/torus.h"
 
@@ -128,6 +130,7 @@ static double pass(const surface *q, double *best, double tolerance, long *cells
         } else {
             const double x = k->high[0] - k->low[0], y = k->high[1] - k->low[1];
             const int j = x * x * q->curvature[0] < y * y * q->curvature[1];
+            assert(top + 1 < MAX_DEPTH + 2);
             k->depth++;
             *other = *k;
             k->high[j] = other->low[j] = 0.5 * k->low[j] + 0.5 * k->high[j];
