@@ -7,7 +7,7 @@ try:
 except ImportError:                     # matplotlib brings it, and plot.check() says so
     np = None  # type: ignore[assignment]
 
-from ..model.exact import short_text
+from ..model.exact import rounded_text, short_text
 from ..prover import tree
 from . import plot
 
@@ -56,9 +56,9 @@ def title(portrait):
     """The theorem, in two lines."""
     waves = ["%s%s" % (short_text(p), "".join(r" \pm " + short_text(g) for g in parts))
              for p, *parts in zip(portrait.problem.amplitude, *portrait.problem.parts)]
-    return "amplitude $%s$; coloured: proved, no rotational circle\n%s undecided: %.1f%% of %s" % (
+    return "amplitude $%s$; coloured: proved, no rotational circle\n%s undecided: %s%% of %s" % (
         ", ".join(waves), "strips," if portrait.strip else "lines,",
-        math.ceil(1000 * portrait.undecided) / 10,
+        rounded_text(100 * portrait.undecided, 3, up=True),
         "phase space" if portrait.strip else "their successors")
 
 

@@ -6,6 +6,7 @@ import textwrap
 
 import numpy as np
 
+from ..model.exact import rounded_text
 from ..storage import files
 from . import plot
 from .plot import BLUE, DARK, GREY, VERMILLION
@@ -87,8 +88,9 @@ def _title(tori, width, proved):
               for low, high in zip(*amplitudes)]
     text = "%s; amplitude%s %s" % (text, "s" * (len(ranges) > 1), ", ".join(ranges))
     if len(proved) == 1:
-        text += "; error of the invariance equation at most %.2e, admissible %.2e" % (
-            proved[0].residual, proved[0].needed)
+        text += "; error of the invariance equation at most %s, admissible %s" % (
+            rounded_text(proved[0].residual, 3, up=True),
+            rounded_text(proved[0].needed, 3, up=False))
     return "\n".join(textwrap.wrap(text, width))
 
 

@@ -2,8 +2,8 @@
 are irrational.
 
 Every exact number of the package is a Fraction.  exact() reads it from whatever a user may give.
-decimal_text() writes a finite decimal, and short_text() any other number.  rounded_text() and
-ball_text() write bounds, rounded outwards.
+decimal_text() writes a finite decimal, and short_text() any other number.  rounded_text() writes a
+bound, and ball_text() two, rounded towards the weaker statement.
 """
 
 import math
@@ -16,7 +16,7 @@ from typing import NamedTuple, Tuple, Union
 MAX_EXPONENT = 300                      # A number is 0 or from 10^-300 to 10^300 in size.
 SHOWN = 20                              # An Interval is printed with 20 digits at most.
 FEWEST, MOST = 6, 10000                 # short_text() tries 6, 12, 24, ... digits.
-SHORT = 3                               # Intervals of numbers up to 10^SHORT need no exponent.
+SHORT = 3                               # Numbers from 10^-SHORT to 10^SHORT need no exponent.
 DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,9})?")
 RATIO = re.compile(r"[+-]?[0-9]+/[0-9]*[1-9][0-9]*")
 
@@ -137,9 +137,9 @@ def range_text(low: Fraction, high: Fraction) -> str:
 # ---- rounding in a direction
 
 def rounded(x: Fraction, places: int, up: bool) -> Fraction:
-    """x rounded down or up to `places` digits after the point."""
-    scaled = x * 10 ** places
-    return Fraction(math.ceil(scaled) if up else math.floor(scaled), 10 ** places)
+    """x rounded down or up to `places` digits after the point; tens are places -1."""
+    unit = Fraction(10) ** -places
+    return (math.ceil(x / unit) if up else math.floor(x / unit)) * unit
 
 
 def outward(low: Fraction, high: Fraction, places: int) -> Ends:
@@ -148,14 +148,23 @@ def outward(low: Fraction, high: Fraction, places: int) -> Ends:
             high if is_decimal(high) else rounded(high, places, up=True))
 
 
-def rounded_text(x: Fraction, digits: int, up: bool) -> str:
-    """x >= 0 rounded down or up to `digits` significant digits, such as 1.3e-21."""
+def rounded_text(x: Union[int, float, Fraction], digits: int, up: bool) -> str:
+    """A proved bound x >= 0, to `digits` significant digits, such as 0.0961 or 1.3e-21.  up: it is
+    an upper bound, and is rounded up; else it is a lower bound, and is rounded down.
+
+    The programs print every proved bound by this function, decimal_text() or ball_text()."""
+    if x == math.inf:
+        return "unbounded"
+    x = Fraction(x)
     if not x:
         return "0"
-    order = _order(x)
-    scaled = x / Fraction(10) ** (order - digits + 1)
-    text = str(math.ceil(scaled) if up else math.floor(scaled))     # 10^digits at most
-    return "%s.%se%d" % (text[0], text[1:digits], order + len(text) - digits)
+    last = _order(x) - digits + 1                           # the place of the last digit
+    bound = rounded(x, -last, up)
+    order = _order(bound)               # one more than that of x if all digits were 9
+    if -SHORT <= order <= SHORT:
+        return decimal_text(bound, max(0, digits - 1 - order))
+    text = decimal_text(bound / Fraction(10) ** order, digits - 1)
+    return "%se%d" % (text, order)
 
 
 def ball_text(low: Fraction, high: Fraction, digits: int) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple
 
-from ..model.exact import decimal_text, exact
+from ..model.exact import decimal_text, exact, rounded_text
 from ..storage import files
 from ..storage.files import ConverseError, Path
 from ..storage.kept import Kept, verify_text
@@ -283,8 +283,8 @@ class ParameterMap(Kept):
                       decimal_text(self.down_to),
                       "" if self.complete else "; not all of it is proved")]
         if self.estimated_all and self.reached < math.inf:
-            lines += ["Reached : all r >= %.3f times the estimate" % (
-                math.ceil(1000 * self.reached + 1e-6) / 1000)]
+            lines += ["Reached : all r >= %s times the estimate" % rounded_text(
+                self.reached + 1e-9, 4, up=True)]       # whose floats are nearer than 1e-9
         lines += ["Time : %.0f seconds" % self.seconds]
         lines += ["SHA-256 : " + self.sha256] if self.sha256 else []
         return "\n".join(lines) + "\n"

@@ -15,7 +15,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
-from ..model.exact import decimal_text, exact, pi_bounds, rounded
+from ..model.exact import decimal_text, exact, pi_bounds, rounded, rounded_text
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..model.region import MARGIN, PLACES, reversal_centre
@@ -231,8 +231,9 @@ class Portrait(Kept):
     # ---- its file
 
     def __repr__(self) -> str:
-        return "<Portrait: %s; %d of %d columns, at most %.1f%% undecided>" % (
-            self.problem.map, len(self.found), self.columns, 100 * self.undecided)
+        return "<Portrait: %s; %d of %d columns, at most %s%% undecided>" % (
+            self.problem.map, len(self.found), len(self.stars),
+            rounded_text(100 * self.undecided, 3, up=True))
 
     def plot(self, ax: Any = None, tori: Sequence[Any] = ()) -> Any:
         """Draws the portrait: y to the right, y' - y upwards, in radians.

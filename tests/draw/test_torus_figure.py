@@ -58,7 +58,7 @@ def test_what_is_needed_and_what_was_reached_is_shown():
     assert 10 ** needed.get_data().values == pytest.approx([1e-8, 1e-8])
     assert 10 ** reached.get_data().values == pytest.approx([1e-11, 1e-11])
     title = torus_figure._title([ONE.pieces[0].torus], 500, ONE.pieces)
-    assert "at most 1.00e-11, admissible 1.00e-08" in title
+    assert "at most 1.00e-11, admissible 1.00e-8" in title
 
 
 @pytest.mark.slow

@@ -86,8 +86,19 @@ def test_rounded_text(x, digits):
     down, up = rounded_text(x, digits, up=False), rounded_text(x, digits, up=True)
     assert Fraction(down) <= x <= Fraction(up)
     assert Fraction(up) - Fraction(down) <= x / 10 ** (digits - 1)
-    assert len(down.partition("e")[0]) == digits + 1
-    assert rounded_text(Fraction(999999), 2, up=True) == "1.0e6" and rounded_text(0, 2, True) == "0"
+    assert {sum(map(str.isdigit, text.partition("e")[0].lstrip("0.")))
+            for text in (down, up) if x < 10 ** digits} <= {digits}
+
+
+@pytest.mark.parametrize("x, digits, down, up", [
+    (Fraction(999999), 2, "9.9e5", "1.0e6"), (0, 2, "0", "0"),
+    (Fraction("9.6029"), 2, "9.6", "9.7"), (Fraction("0.0961"), 2, "0.096", "0.097"),
+    (Fraction("0.35625"), 4, "0.3562", "0.3563"), (Fraction("0.35625"), 5, "0.35625", "0.35625"),
+    (Fraction(1, 3000), 2, "3.3e-4", "3.4e-4"), (100, 3, "100", "100"), (1234, 2, "1200", "1300"),
+    (0.1, 3, "0.100", "0.101"), (float("inf"), 3, "unbounded", "unbounded")])
+def test_a_bound_is_rounded_towards_the_weaker_statement(x, digits, down, up):
+    """0.1 is a double, above 1/10."""
+    assert (rounded_text(x, digits, up=False), rounded_text(x, digits, up=True)) == (down, up)
 
 
 @given(st.fractions(), st.one_of(st.just(0), positive), st.integers(-400, 400))

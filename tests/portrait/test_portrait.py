@@ -276,3 +276,12 @@ def test_depth_that_proves_nothing_is_told(tmp_path):
 
 def test_pruned():
     assert pruned("0P01UUU") == "0PU" and pruned("00UUU") == "U" and pruned("0PU") == "0PU"
+
+
+def test_no_words_say_less_undecided_than_there_is(strips, monkeypatch):
+    """0.096029 is not "at most 9.6%": in the line of a notebook, and above the figure."""
+    from converse.draw.portrait_figure import title
+
+    monkeypatch.setattr(Portrait, "undecided", Fraction("0.096029"))
+    assert "30 of 30 columns, at most 9.61% undecided" in repr(strips[0])
+    assert "undecided: 9.61%" in title(strips[0])
