@@ -1,5 +1,6 @@
 """csrc/arith/apm.c against Python's fractions: every operation, every rounding direction."""
 
+import re
 import sys
 from decimal import Decimal
 from fractions import Fraction
@@ -95,6 +96,33 @@ def test_square_root_encloses(x, dp):
 @given(decimals(), st.integers(-500, 500))
 def test_scale(x, places):
     assert call("scale", x[0], str(places)) == [x[1] * Fraction(10)**places]
+
+
+OPERATIONS = ("set", "neg", "abs", "add", "sub", "mul", "mul_si", "scale", "round", "floor", "sqrt",
+              "div")                        # numbers.c: operate
+
+
+@pytest.mark.parametrize("which", range(len(OPERATIONS)), ids=OPERATIONS)
+@given(x=decimals(), y=decimals(), dp=st.integers(1, 120), direction=st.integers(0, 2))
+@example(x=("7e20", None), y=("3e0", None), dp=3, direction=0)
+@example(x=("3e0", None), y=("7e20", None), dp=3, direction=1)
+def test_results_may_be_operands(which, x, y, dp, direction):
+    if OPERATIONS[which] == "sqrt":
+        x = y = (x[0].lstrip("-"), None)
+    try:
+        apart, *in_place, twice, twice_in_place = call(
+            "in_place", str(which), str(direction), x[0], y[0], nout=5, dp=dp)
+    except ArithmeticError:
+        assert OPERATIONS[which] == "div"
+        return
+    assert in_place == [apart, apart]
+    assert twice_in_place == twice
+
+
+def test_the_header_has_no_other_operation(root):
+    header = (root / "csrc" / "arith" / "apm.h").read_text("utf-8")
+    named = re.findall(r"^(?:int|void) apm_(\w+)\(apm_t r, const apm_t x", header, re.MULTILINE)
+    assert sorted(named) == sorted(OPERATIONS)
 
 
 @given(decimals())

@@ -99,6 +99,18 @@ def test_sqrt(x, dp):
     assert root**2 <= Fraction(x) < (root + Fraction(1, 10**dp))**2
 
 
+@pytest.mark.parametrize("dp", [3000, 3001])
+def test_identities_of_thousands_of_digits(dp):
+    """Nothing else knows so many digits of these: the functions bear each other out."""
+    x, unit = Fraction(31415926, 10**7), Fraction(1, 10**dp)
+    sine, cosine = kernels.call("sincos", [x], 2, dp)
+    twice, double = kernels.call("sincos", [2 * x], 2, dp + 700)
+    assert abs(sine**2 + cosine**2 - 1) <= 5 * unit
+    assert abs(twice - 2 * sine * cosine) <= 5 * unit
+    assert abs(double - 2 * cosine**2 + 1) <= 5 * unit
+    assert 0 <= kernels.pi(dp + 700) - kernels.pi(dp) < unit
+
+
 def test_zero():
     assert kernels.sin(0, 35) == 0
     assert kernels.cos(0, 35) == 1

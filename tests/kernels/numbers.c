@@ -106,6 +106,46 @@ static int as_double(long dp, apm_t in[], apm_t out[])  /* what apm_get_d makes 
     return code_of(apm_set_d(out[0], apm_get_d(in[0])));
 }
 
+/* An operation of apm.h by its number, with a direction where it takes one. */
+static int operate(int which, apm_t r, const apm_t x, const apm_t y, long n, apm_round_t dir)
+{
+    switch (which) {
+    case 0: apm_set(r, x); break;
+    case 1: apm_neg(r, x); break;
+    case 2: apm_abs(r, x); break;
+    case 3: apm_add(r, x, y); break;
+    case 4: apm_sub(r, x, y); break;
+    case 5: apm_mul(r, x, y); break;
+    case 6: apm_mul_si(r, x, n); break;
+    case 7: apm_scale(r, x, n); break;
+    case 8: apm_round(r, x, n, dir); break;
+    case 9: apm_floor(r, x); break;
+    case 10: return apm_sqrt(r, x, n, dir);
+    default: return apm_div(r, x, y, n, dir);
+    }
+    return APM_OK;
+}
+
+/* Which operation, its direction, x and y -> its results of x and y, where r is neither, x or y;
+   and of x and x, where r is neither and where r is x. */
+static int in_place(long dp, apm_t in[], apm_t out[])
+{
+    const int which = (int)apm_get_d(in[0]);
+    const apm_round_t dir = directions[(int)apm_get_d(in[1])];
+    const apm_struct *const x = in[2], *const y = in[3];
+    int status = operate(which, out[0], x, y, dp, dir);
+
+    apm_set(out[1], x);
+    apm_set(out[2], y);
+    apm_set(out[4], x);
+    if (status == APM_OK)
+        status = operate(which, out[1], out[1], y, dp, dir) ||
+                 operate(which, out[2], x, out[2], dp, dir) ||
+                 operate(which, out[3], x, x, dp, dir) ||
+                 operate(which, out[4], out[4], out[4], dp, dir);
+    return code_of(status);
+}
+
 /* Centre and half-width in units of pi -> the same in radians, with dp places of pi. */
 static int region(long dp, apm_t in[], apm_t out[])
 {
@@ -244,6 +284,7 @@ static const struct {
     { { "floor", 1, 1 }, integer_below },
     { { "scale", 2, 1 }, scale },
     { { "order", 1, 1 }, order },
+    { { "in_place", 4, 5 }, in_place },
     { { "double", 1, 1 }, as_double },
     { { "region", 2, 2 }, region },
     { { "region_that_moves", 5, 5 }, region_that_moves },
