@@ -29,3 +29,8 @@ class _Names:
 
 
 check = _Names()
+
+
+def start_of_workers(code):
+    """What the checker's processes run, where they run this code first."""
+    return check.START.replace("; work()", "; exec(%r); work()" % code)

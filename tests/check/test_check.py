@@ -35,7 +35,7 @@ from converse.check import lockstep
 from converse.check import state as state_module
 from converse.model.map import LINE
 
-from checker import check
+from checker import check, start_of_workers
 from moments import PATIENCE
 from trees import cells_of, found_tree, halves
 from truth import TORTURE
@@ -994,7 +994,7 @@ import os, signal, sys
 sys.path.insert(0, sys.argv.pop(1))
 from check import main
 def strike(frame, event, arg):
-    if (event, frame.f_code.co_name) in (("call", "_bootstrap"), ("return", "_launch")):
+    if (event, frame.f_code.co_name) == ("return", "_execute_child"):
         sys.setprofile(None)
         os.kill(os.getpid(), signal.SIGTERM)
 sys.setprofile(strike)
@@ -1302,33 +1302,57 @@ def test_a_signal_while_the_state_is_made(deep, run, tmp_path, monkeypatch):
         assert run(deep, "--state", str(tmp_path / name))[0] == 0
 
 
-@pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="the worker is a copy")
 def test_a_worker_that_dies(deep, run, tmp_path, monkeypatch):
     """It is said, and what was confirmed before stands."""
     left = tree_of(deep).count("P") - 100
     last = [cell for at, cell in check.leaves(tree_of(deep)) if tree_of(deep)[at] == "P"][left]
-    excluded = check.Criterion.excluded
-    monkeypatch.setattr(check.Criterion, "excluded", lambda self, cell: (
-        os._exit(3) if cell == last else excluded(self, cell)))
-    status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"), "--exact")
+    with monkeypatch.context() as patch:
+        patch.setattr(check, "START", start_of_workers("""if True:
+            import os
+            from converse.check.criterion import Criterion
+            excluded = Criterion.excluded
+            Criterion.excluded = lambda self, cell: (
+                os._exit(3) if cell == %r else excluded(self, cell))
+            """ % (last,)))
+        status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"), "--exact")
     assert (status, out) == (2, "")
     assert "a worker process died, perhaps for lack of memory; nothing was verified\n" in err
     assert err.count("\n") == 1 and 0 < confirmed(tmp_path / "state") <= left
-    monkeypatch.undo()
     status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"), "--exact")
     assert status == 0 and "earlier run" in out
 
 
-@pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="the worker is a copy")
+@pytest.mark.parametrize("method", ["spawn", "forkserver", "fork"])
+def test_processes_never_run_the_main_module(texts, tmp_path, method):
+    """A script without a guard, whatever it says of how multiprocessing is to start processes."""
+    if method not in multiprocessing.get_all_start_methods():
+        pytest.skip("multiprocessing has no %s here" % method)
+    path, script = tmp_path / "proof", tmp_path / "script.py"
+    path.write_text(texts["trig274"], encoding="utf-8")
+    script.write_text("""if True:
+        import multiprocessing, sys
+        print("the script runs")
+        multiprocessing.set_start_method(sys.argv[1])
+        from converse import check
+        print(check.verify(sys.argv[2], jobs=2, exact=True).verdict)
+        """, encoding="utf-8")
+    done = subprocess.run([sys.executable, script, method, path], capture_output=True, text=True,
+                          timeout=PATIENCE)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == "the script runs\nverified\n"
+
+
 def test_a_worker_whose_numpy_is_not_sound_uses_integers(np, texts, run, monkeypatch):
     """However sound it was in the parent."""
-    parent, is_sound = os.getpid(), check.import_numpy_if_sound
     exact = run(texts["trig274"], "--exact")[1]
     assert "Method : Loewner criterion, multipliers, in integers" in exact
     monkeypatch.setattr(check, "FAST_CHUNK", (16, 32))
-    monkeypatch.setattr(check, "import_numpy_if_sound",
-                        lambda: os.getpid() == parent and is_sound())
-    monkeypatch.setattr(check.Lockstep, "settle", lambda *_: os._exit(3))
+    monkeypatch.setattr(check, "START", start_of_workers("""if True:
+        import os
+        from converse.check import lockstep, workers
+        workers.import_numpy_if_sound = lambda: False
+        lockstep.Lockstep.settle = lambda *_: os._exit(3)
+        """))
     assert run(texts["trig274"], "--jobs", "2") == (0, exact, "")
 
 

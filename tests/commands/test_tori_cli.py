@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import os
 import re
 import signal
 import subprocess
@@ -17,6 +18,7 @@ from converse.model.map import MuldoonMap, SymplecticMap, from_patch
 from converse.storage import files
 from converse.tori import certificate, report
 
+from checker import start_of_workers
 from truth import TORTURE
 
 K09 = str(ROOT / "inputs" / "standard-k090.in")
@@ -200,49 +202,55 @@ def test_an_interrupt_leaves_nothing(run, tmp_path, monkeypatch):
     assert "THEOREM" not in out and not file.exists()
 
 
+def faulty(verify):
+    """The command, whose processes verify pieces by this function."""
+    return """if True:
+        import sys
+        from converse.check import processes
+        from converse.commands import tori
+        processes.START = %r
+        tori.QUIET_SECONDS = 1e9
+        sys.exit(tori.main(sys.argv[1:]))
+        """ % start_of_workers(verify + "\nfrom converse.check import tori"
+                               "\ntori.verify_width = verify")
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_all_processes(tmp_path, number):
     """While pieces are verified, each of which would take minutes."""
-    code = """if True:
-        import sys, time
-        from converse.check import tori
-        from converse.commands import tori as cli
-        def verify(*_):
-            sys.stdout.write("verifying\\n")
-            sys.stdout.flush()
-            time.sleep(600)
-        tori.verify_width, cli.QUIET_SECONDS = verify, 1e9
-        sys.exit(cli.main(sys.argv[1:]))
-        """
-    problem, file = tmp_path / "range.in", tmp_path / "range.torus"
+    problem, file, pipe = (tmp_path / name for name in ("range.in", "range.torus", "pipe"))
     problem.write_text("0.45 0.35\n0 0\n0 0\n1 1\n1 1\n")
+    os.mkfifo(pipe)
+    code = faulty("""if True:
+        import time
+        def verify(*_):
+            with open(%r, "wb", 0) as file:
+                file.write(b"verifying")
+                time.sleep(600)""" % str(pipe))
     run = subprocess.Popen([sys.executable, "-c", code, "prove", str(problem), "--rotation",
                             "golden", "--jobs", "2", "-b", str(file)], text=True,
                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    assert any(line == "verifying\n" for line in run.stdout)
-    run.send_signal(number)
-    out, err = run.communicate(timeout=300)     # the pipes are closed, so the processes have ended
+    with open(pipe, "rb", 0) as told:
+        assert told.read(9) == b"verifying"
+        run.send_signal(number)
+        out, err = run.communicate(timeout=300)
+        assert told.read() in (b"", b"verifying")       # The processes, which had it open, ended.
     assert run.returncode == 128 + number
     assert err == "converse-tori: interrupted; nothing is proved\n" and "THEOREM" not in out
-    assert [each.name for each in tmp_path.iterdir()] == ["range.in"]
+    assert {each.name for each in tmp_path.iterdir()} == {"range.in", "pipe"}
 
 
 def test_a_process_that_dies_is_told(tmp_path):
     """In the midst of its work, while the other one works, too."""
-    code = """if True:
-        import os, signal, sys, time
-        from converse.check import tori
-        from converse.commands import tori as cli
+    problem = tmp_path / "range.in"
+    problem.write_text("0.45 0.35\n0 0\n0 0\n1 1\n1 1\n")
+    code = faulty("""if True:
+        import os, signal, time
         def verify(*_):
             if not os.path.exists("one"):
                 open("one", "w").close()
                 time.sleep(600)
-            os.kill(os.getpid(), signal.SIGKILL)
-        tori.verify_width, cli.QUIET_SECONDS = verify, 1e9
-        sys.exit(cli.main(sys.argv[1:]))
-        """
-    problem = tmp_path / "range.in"
-    problem.write_text("0.45 0.35\n0 0\n0 0\n1 1\n1 1\n")
+            os.kill(os.getpid(), signal.SIGKILL)""")
     run = subprocess.run([sys.executable, "-c", code, "prove", "range.in", "--rotation", "golden",
                           "--jobs", "2"], text=True, capture_output=True, cwd=tmp_path, timeout=300)
     assert run.returncode == 2 and "THEOREM" not in run.stdout
