@@ -9,9 +9,11 @@ from fractions import Fraction
 
 import chart
 import pytest
-from test_numbers import POINTS, number, rows, said, sharper
+from conftest import ROOT
+from test_numbers import PAGES, POINTS, number, rows, said, sharper
 
 from converse import Problem, portray, tori
+from converse.model.inputs import read_input
 from converse.model.map import MuldoonMap
 from converse.parameters.map import PROVED
 from converse.parameters.search import explore
@@ -32,6 +34,7 @@ def linked_points():
 
 
 CHEAP = "two harmonics, K2 = 0.4", "0.6"
+XSTAR = {"0.5887": ("1.84", "0")}           # where the program's does not do
 
 
 @pytest.mark.parametrize("name, value, prisms", [
@@ -39,6 +42,45 @@ CHEAP = "two harmonics, K2 = 0.4", "0.6"
 def test_linked_points_of_other_maps(name, value, prisms):
     counts = sharper(POINTS[name][1](value))
     assert counts.linked and counts.proved == prisms
+
+
+def windows():
+    """(K1, rotation number or "", marks) of the circles that come back."""
+    for values, proved, rotation, _ in rows("frontier.md", "K1")[1:]:
+        assert proved in ("a circle", "no circle")
+        assert bool(rotation) == (proved == "a circle")
+        for at in values.split("; "):
+            yield pytest.param(at, rotation.strip("`"), id=at,
+                               marks=() if at in ("0.207", "0.28", "0.42", "0.52") else dear)
+
+
+@pytest.mark.parametrize("K1, rotation", list(windows()))
+def test_circles_that_come_back(K1, rotation):
+    """Where the straight way from the map without potential is barred, by a bend; two come from
+    orbits, which are not followed here."""
+    name = "two harmonics, K2 = 0.4"
+    problem = POINTS[name][1](K1)
+    if not rotation:
+        sharper(problem, xstar=XSTAR.get(K1))
+    elif K1 in ("0.207", "0.212"):
+        tori.prove(tori.find(problem.map, rotation))
+    elif K1 == "0.42":
+        start = tori.find(POINTS["standard map"][1](K1).map, rotation)
+        tori.prove(tori.find(problem.map, rotation, start=start))
+
+
+def test_a_range_without_circles(tmp_path):
+    low, high, count = re.search(r"no circle for any K1 from ([0-9.]+) to ([0-9.]+) \((\d+) prisms\)",
+                                 " ".join(PAGES["frontier.md"].split())).groups()
+    old, new, *xstar = re.search(r"sed 's/(.*?)/(.*?)/' inputs/two-harmonics.json > windows.json\n"
+                                 r" *converse --method loewner --xstar (\S+) (\S+) windows.json",
+                                 PAGES["frontier.md"]).groups()
+    assert new == '"%s", "%s"' % (low, high)
+    text = (ROOT / "inputs" / "two-harmonics.json").read_text("utf-8")
+    assert old in text
+    (tmp_path / "windows.json").write_text(text.replace(old, new))
+    counts = sharper(read_input(tmp_path / "windows.json"), xstar=tuple(xstar))
+    assert counts.proved == number(count) and not counts.linked
 
 
 @dear
