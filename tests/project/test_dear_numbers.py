@@ -70,8 +70,9 @@ def test_circles_that_come_back(K1, rotation):
 
 
 def test_a_range_without_circles(tmp_path):
-    low, high, count = re.search(r"no circle for any K1 from ([0-9.]+) to ([0-9.]+) \((\d+) prisms\)",
-                                 " ".join(PAGES["frontier.md"].split())).groups()
+    low, high, count = re.search(
+        r"no circle for any K1 from ([0-9.]+) to ([0-9.]+) \((\d+) prisms\)",
+        " ".join(PAGES["frontier.md"].split())).groups()
     old, new, *xstar = re.search(r"sed 's/(.*?)/(.*?)/' inputs/two-harmonics.json > windows.json\n"
                                  r" *converse --method loewner --xstar (\S+) (\S+) windows.json",
                                  PAGES["frontier.md"]).groups()
