@@ -13,6 +13,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from ..model.potential import FourierSum
+from ..storage.files import ConverseError
 from .effort import LAYER_BYTES, REFINING_BYTES, SOLVING, free_memory, some
 from .newton import EPSILON, Mesh, default_frame
 from .rotation import Rotation
@@ -33,7 +34,7 @@ HISTORY = 4                 # The next torus is extrapolated from the last HISTO
 TOO_LARGE = "too large"
 
 
-class NotFound(Exception):
+class NotFound(ConverseError):
     """No torus was found; the text says why, and what was reached.
 
     Attributes

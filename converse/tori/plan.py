@@ -53,9 +53,7 @@ class Plan(NamedTuple):
     def box(self, like: Mesh) -> Sequence[float]:
         """In each direction the mode numbers of a mesh on which products of the modes that are kept
         have room."""
-        alpha = self.alpha if len(like.sizes) == len(self.alpha) else [
-            float(self.length(np.array(like.basis[0])))]
-        return [EDGE * self.size / a for a in alpha]
+        return [EDGE * self.size / a for a in _steps(like, self.alpha)]
 
     def mesh(self, like: Mesh, real: bool = True) -> Mesh:
         """Such a mesh."""
@@ -63,9 +61,7 @@ class Plan(NamedTuple):
 
     def reach(self, mesh: Mesh) -> float:
         """All modes with |k| below this are on the mesh."""
-        if len(mesh.sizes) == len(self.alpha):
-            return float((np.array(self.alpha) * mesh.half).min())
-        return float(self.length(np.array(mesh.basis[0])) * mesh.half[0])
+        return float((_steps(mesh, self.alpha) * mesh.half).min())
 
     def keep(self, mesh: Mesh) -> np.ndarray:
         """The modes of a mesh that a torus may have."""
@@ -102,6 +98,12 @@ def _length(frame, alpha, k):
     return sum(a * abs(combined(row, k)) for a, row in zip(alpha, frame))
 
 
+def _steps(mesh: Mesh, alpha: Weights) -> np.ndarray:
+    """What a step of each mode number of a mesh adds to |k|."""
+    return np.array(alpha if len(mesh.basis) == 2 else [
+        _length(mesh.frame, alpha, np.array(mesh.basis[0]))], float)
+
+
 class _Needed:
     """About the largest ||E||_rho for which the theorem holds, in any norm: from norms in doubles,
     small divisors, and the loss of the first step."""
@@ -136,8 +138,7 @@ class _Needed:
     def plan(self, alpha: Weights, margin: float, more: float) -> Plan:
         mesh, tau = self.mesh, len(alpha)
         rank = len(mesh.sizes)
-        steps = np.array(alpha if rank == tau else [
-            _length(mesh.frame, alpha, np.array(mesh.basis[0]))], float)
+        steps = _steps(mesh, alpha)
         rate = float((self.rates / steps).min())
         length = _length(mesh.frame, alpha, self.all)
         # exp of a large number is only asked for where the coefficient is known to be small

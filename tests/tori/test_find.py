@@ -8,6 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from converse import ConverseError, FourierMap
 from converse.check import field
 from converse.model.map import LINE, MuldoonMap, SymplecticMap
 from converse.model.problem import Problem
@@ -121,6 +122,17 @@ def test_beyond_the_frontier_nothing_is_found(problem, rotation):
     assert reached == pytest.approx(caught.value.reached * float(problem.amplitude[0]))
 
 
+def test_a_common_factor_of_the_waves_changes_only_the_units():
+    """The map of 100 y is the standard map: as many modes, and the same margin about."""
+    found = []
+    for factor in (1, 10, 100):
+        torus = find(FourierMap({factor: Fraction("0.8") / factor ** 2}),
+                     "t^2+t-1: t/%d" % factor)
+        assert set(torus.k[:, 0] % factor) == {0}
+        found.append((len(torus.k), float(torus.strip.rho * factor)))
+    assert found == [pytest.approx(found[0], rel=0.02)] * 3
+
+
 def test_a_torus_is_continued_from_another_one():
     first = find(Problem(MuldoonMap("0.6", 0, 0)), GOLDEN)
     direct, continued = (find(Problem(MuldoonMap("0.8", 0, 0)), GOLDEN, start=start)
@@ -134,6 +146,7 @@ def test_a_torus_is_continued_from_another_one():
 
 
 def test_a_grid_that_is_too_small_is_said():
+    assert issubclass(NotFound, ConverseError)
     """Not only where the torus would seem to break up."""
     with pytest.raises(NotFound, match="farther on it needs more than the 256 points that are"):
         find(Problem(MuldoonMap("0.9", 0, 0)), GOLDEN, points=256)
