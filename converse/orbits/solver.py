@@ -4,7 +4,7 @@ import csv
 import math
 import os
 from dataclasses import dataclass, replace
-from typing import Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tuple, Union
+from typing import Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tuple, Union, overload
 
 import numpy as np
 
@@ -61,8 +61,16 @@ class Family:
     def __len__(self) -> int:
         return len(self.states)
 
+    @overload
     def __getitem__(self, k: int) -> PeriodicOrbit:
-        return self.states[k]
+        ...
+
+    @overload
+    def __getitem__(self, k: slice) -> "Family":
+        ...
+
+    def __getitem__(self, k: Union[int, slice]) -> Union[PeriodicOrbit, "Family"]:
+        return Family(self.states[k]) if isinstance(k, slice) else self.states[k]
 
     def __iter__(self) -> Iterator[PeriodicOrbit]:
         return iter(self.states)

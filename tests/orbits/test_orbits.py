@@ -557,6 +557,7 @@ def test_states_are_values(tmp_path):
     lengths = [np.hypot(*(state.u - line).T).max() for line in (state.u[0], 0)]
     assert state.deviation == pytest.approx(lengths, abs=1e-15)
     family = orbits.follow(orbits.trig, (5, 7), 9, [0.01, 0.02])
+    assert isinstance(family[1:], orbits.Family) and list(family[1:].eps) == [0.02]
     assert family[1].eps == 0.02 and [state.eps for state in family] == family.eps.tolist()
     text = io.StringIO()
     family.write_csv(text)
