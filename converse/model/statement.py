@@ -46,8 +46,8 @@ def indented(lines):
 
 
 def ended(lines):
-    """The lines with a full stop."""
-    return [*lines[:-1], lines[-1] + "."]
+    """The lines with a full stop, unless they end with dots."""
+    return [*lines[:-1], lines[-1] + "." * (not lines[-1].endswith("..."))]
 
 
 def potential_text(problem):

@@ -3,6 +3,7 @@ the rotation vector and the modes of the torus, exactly, which are the claim; an
 in which it is verified.  The checker's parser is the only one."""
 
 import os
+from dataclasses import replace
 from typing import List, NamedTuple, Sequence, Tuple, Union
 
 import numpy as np
@@ -13,7 +14,7 @@ from ..model.potential import FourierSum
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
-from .rotation import Rotation
+from .rotation import Rotation, name_of
 from .torus import Strip, Torus
 
 FIRST_LINE = "converse torus 1"
@@ -67,8 +68,8 @@ def tori_of(claim: check.TorusClaim) -> Tuple[Torus, ...]:
                            tuple(wave.middle for wave in claim.waves), n)
     part = None if claim.pieces[0].low == claim.pieces[0].high else tuple(
         wave.parts[0] for wave in claim.waves)
-    rotation = Rotation(claim.hints.get("hint-name", ""), claim.polynomial, claim.root,
-                        claim.rotation)
+    rotation = Rotation("", claim.polynomial, claim.root, claim.rotation)
+    rotation = replace(rotation, name=name_of(rotation))        # whatever a hint calls it
     tori = []
     for piece, rho in zip(claim.pieces, claim.rho):
         rows = sorted(piece.modes.items())
@@ -93,7 +94,6 @@ def text(tori: Sequence[Torus]) -> str:
               for wave, p, part in zip(potential.waves, potential.amplitude, parts)]
     lines += ["polynomial: " + _words(rotation.polynomial), "root: " + _words(rotation.root)]
     lines += ["rotation: " + _words(element) for element in rotation.vector]
-    lines += ["hint-name: " + rotation.name] if rotation.name else []
     lines += ["frame: " + _words(x for row in strip.frame for x in row),
               "alpha: " + _words(strip.alpha),
               "rho: " + _words(torus.strip.rho for torus in tori if torus.strip),

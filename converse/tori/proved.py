@@ -9,15 +9,16 @@ from fractions import Fraction
 from typing import Any, Callable, Dict, Optional, Sequence, Tuple, Union
 
 from .. import check
-from ..model.exact import Ends
+from ..model.exact import Ends, rounded_text
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
+from ..model.statement import potential_text
 from ..storage.files import ConverseError, Path
 from ..storage.kept import Kept
 from . import certificate
 from .find import find
 from .rotation import Rotation, rotation_of
-from .torus import Torus, family
+from .torus import Torus, family, problem_of
 
 # If the residual exceeds what is needed by a factor below MOST_LACKING, the torus is found again,
 # with a margin of FINER times this factor.
@@ -86,7 +87,9 @@ class ProvedTorus(Kept):
     seconds: float
 
     def __repr__(self) -> str:
-        return "<ProvedTorus, rotation %s, within %.1e>" % (self.rotation, self.distance)
+        return "<ProvedTorus: V = %s%s; rotation %s, within %s>" % (
+            potential_text(problem_of(self.torus)), ", -1 <= s <= 1" * bool(self.torus.part),
+            self.rotation, rounded_text(self.distance, 2, up=True))
 
     def _text(self) -> str:
         return self.certificate

@@ -5,7 +5,7 @@ import math
 from fractions import Fraction
 from typing import Iterator, Optional, Sequence, Tuple, Union
 
-from ..model.exact import decimal_text, rounded, rounded_text, short_text
+from ..model.exact import decimal_text, rounded_text, short_text
 from ..model.map import from_patch
 from ..model.problem import Problem
 from ..model.statement import TORUS, conditions, ended, indented, labelled, map_lines, parameters
@@ -15,7 +15,7 @@ from ..version import __version__
 from .find import NotFound
 from .proved import NotProved, Piece, ProvedTorus
 from .rotation import Rotation, element_text, polynomial_text
-from .torus import Strip, family
+from .torus import Strip, family, problem_of
 
 DIGITS, FEW = 20, 14                    # characters of omega, and of omega in the theorem
 VECTOR = {1: "rotation number", 2: "rotation vector"}
@@ -32,14 +32,6 @@ def _stated(problem: Problem) -> Problem:
         each for each in named if each[1] < each[2]]))
 
 
-def _of(proof: ProvedTorus) -> Problem:
-    """The problem of a proof whose input is not at hand, with the parameter s in [-1, 1]."""
-    torus = proof.torus
-    return Problem(from_patch(torus.potential.waves, torus.potential.amplitude,
-                              [torus.part] if torus.part else [],
-                              [("s", Fraction(-1), Fraction(1))] if torus.part else ()))
-
-
 def _rotation_lines(rotation: Rotation) -> Iterator[Tuple[str, str]]:
     """The rotation vector, exactly and to 20 digits."""
     n = rotation.dimension
@@ -48,6 +40,8 @@ def _rotation_lines(rotation: Rotation) -> Iterator[Tuple[str, str]]:
         _rounded(rotation, rotation.field.t))
     for name, element in zip(_names("omega", n), rotation.vector):
         yield "", "%s = %s = %s..." % (name, element_text(element), _rounded(rotation, element))
+    if n == 1:
+        yield "", "      = " + rotation.continued_fraction()
 
 
 def _input_lines(problem: Optional[Problem]) -> Iterator[Tuple[str, str]]:
@@ -82,7 +76,7 @@ def verdict(proof: ProvedTorus, seconds: Optional[float] = None,
     problem
         The input, whose parameters and comments are used."""
     n, worst = proof.rotation.dimension, proof.worst
-    stated = _stated(problem) if problem else _of(proof)
+    stated = _stated(problem) if problem else problem_of(proof.torus)
     lines = ["THEOREM", *map_lines(stated), *ended(indented([
         "has %s with the %s omega = %s" % (_a(TORUS[n]), VECTOR[n], _omega(proof.rotation)),
         *conditions(stated)])), *indented([
@@ -197,17 +191,8 @@ def _reached(problem: Problem, amplitude: Sequence[float]) -> Iterator[Tuple[str
 
 
 def _up(x: Union[float, Fraction], digits: int = 3) -> str:
-    """x >= 0, rounded up."""
-    return _text(Fraction(x), digits, True) if math.isfinite(x) else "unbounded"
+    return rounded_text(x, digits, up=True)
 
 
 def _down(x: Union[float, Fraction], digits: int = 3) -> str:
-    """x >= 0, rounded down."""
-    return _text(Fraction(x), digits, False)
-
-
-def _text(x, digits, up):
-    if not Fraction(1, 1000) <= x < 10000:
-        return rounded_text(x, digits, up)
-    places = max(0, digits - 1 - math.floor(math.log10(x)))
-    return decimal_text(rounded(x, places, up), places)
+    return rounded_text(x, digits, up=False)

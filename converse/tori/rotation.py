@@ -8,11 +8,11 @@ that can be computed: converse/check/field.py.
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from math import lcm
-from typing import Dict, Optional, Sequence, Tuple, Union
+from math import floor, lcm
+from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 from ..check.field import is_irreducible, roots_between
 from ..model.exact import Ends, exact
@@ -23,7 +23,7 @@ LONGEST = 2000                          # A text of a rotation vector has at mos
 
 @dataclass(frozen=True)
 class Rotation:
-    """A rotation vector, in turns: w = 2 pi omega.
+    """A rotation vector, in turns: w = 2 pi omega.  Two are equal if all except the name is.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Rotation:
         are linearly dependent over the rationals.
     """
 
-    name: str
+    name: str = field(compare=False)
     polynomial: Polynomial
     root: Ends
     vector: Tuple[Element, ...]
@@ -102,6 +102,38 @@ class Rotation:
     def floats(self) -> Tuple[float, ...]:
         """The omega_j as doubles."""
         return tuple(float(low) for low, _ in self.turns(30))
+
+    def continued_fraction(self, most: int = 24) -> str:
+        """The continued fraction of a rotation number, which is periodic in the end.
+
+        Parameters
+        ----------
+        most
+            At most about these quotients are written.
+
+        Returns
+        -------
+        str
+            Such as "[0; 2, 7, 1, 1, ...]": the period is written twice, if that is short enough.
+
+        Raises
+        ------
+        ValueError
+            It is a vector of two components.
+        """
+        if self.dimension > 1:
+            raise ValueError("a rotation vector of two components has no continued fraction")
+        rest = self.vector[0]
+        quotients: List[int] = []
+        seen: Dict[Element, int] = {}
+        while rest not in seen and len(quotients) < most:
+            seen[rest], digits = len(quotients), 10
+            while len(found := {floor(x) for x in self.field.bounds(rest, digits)}) > 1:
+                digits *= 2
+            quotients += found
+            rest = self.field.inverse((rest[0] - quotients[-1], *rest[1:]))
+        first, *others = map(str, (quotients + quotients[seen.get(rest, most):])[:most])
+        return "[%s; %s, ...]" % (first, ", ".join(others))
 
     def text(self) -> str:
         """The text that read_rotation reads as this vector: the polynomial, the root unless it is
@@ -178,7 +210,12 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
     ------
     ValueError
         The text is not a rotation vector, or not of `dimension` angles.
+    TypeError
+        It is not a text.
     """
+    if not isinstance(text, str):
+        raise TypeError("a rotation vector is given as a text such as 'golden' or 't^2+t-1: t', "
+                        "exactly; %r is not a text" % (text,))
     if len(text) > LONGEST:
         raise ValueError("the rotation vector has %d characters; %d at most" % (len(text), LONGEST))
     key = {name.lower(): name for name in NAMES}.get(text.strip().lower())
@@ -191,11 +228,15 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
     return rotation
 
 
+def name_of(rotation: Rotation) -> str:
+    """The name that read_rotation() reads as this rotation vector, "" if there is none."""
+    return next((name for name, (text, _) in NAMES.items() if text.partition(":")[0] ==
+                 polynomial_text(rotation.polynomial) and read_rotation(name).text() ==
+                 rotation.text()), "")
+
+
 def rotation_of(given: Union[Rotation, str]) -> Rotation:
     """A rotation vector as it is, or the one that a text describes."""
-    if not isinstance(given, (Rotation, str)):
-        raise TypeError("the rotation vector is a Rotation, or a text such as 'golden', not %r"
-                        % (given,))
     return given if isinstance(given, Rotation) else read_rotation(given)
 
 

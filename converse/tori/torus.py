@@ -24,9 +24,10 @@ from typing import TYPE_CHECKING, Any, List, NamedTuple, Optional, Tuple, Union
 import numpy as np
 
 from ..model.exact import Ends
-from ..model.map import SymplecticMap
+from ..model.map import SymplecticMap, from_patch
 from ..model.potential import FourierSum
 from ..model.problem import Problem
+from ..model.statement import potential_text
 from ..storage import files
 
 if TYPE_CHECKING:
@@ -57,6 +58,13 @@ def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
     potential = FourierSum(waves, tuple(problem.amplitude[j] for j in present),
                            2 if any(k1 for _, k1, _ in waves) else 1)
     return potential, tuple(part[j] for j in present) if parts else None
+
+
+def problem_of(torus: "Torus") -> Problem:
+    """The problem of a torus whose input is not at hand, with the parameter s in [-1, 1]."""
+    return Problem(from_patch(torus.potential.waves, torus.potential.amplitude,
+                              [torus.part] if torus.part else [],
+                              [("s", Fraction(-1), Fraction(1))] if torus.part else ()))
 
 
 class Strip(NamedTuple):
@@ -114,7 +122,8 @@ class Torus:
 
     def __repr__(self) -> str:
         where = "" if self.part is None else ", s from %s to %s" % self.piece
-        return "<Torus, rotation %s, %d modes%s>" % (self.rotation, len(self.k), where)
+        return "<Torus: V = %s; rotation %s, %d modes%s>" % (
+            potential_text(problem_of(self)), self.rotation, len(self.k), where)
 
     @property
     def dimension(self) -> int:

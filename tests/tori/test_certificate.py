@@ -7,9 +7,10 @@ from fractions import Fraction as Q
 
 import pytest
 
-from converse import check
+from converse import StandardMap, check, tori
 from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
+from converse.storage import files
 from converse.storage.files import ConverseError
 from converse.tori import certificate
 from converse.tori.find import find
@@ -72,6 +73,17 @@ def refused(path, data):
         certificate.read(path)
     assert str(error.value).startswith(str(path)) and "\n" not in str(error.value)
     return str(error.value)
+
+
+@pytest.mark.parametrize("name", ["silver", "\x1b[31mred", "golden"])
+def test_a_name_in_a_file_names_nothing(tmp_path, name):
+    """The polynomial, its root and the vector do."""
+    body = tori.prove(StandardMap("0.1"), "golden").certificate.partition("checksum")[0].replace(
+        "frame:", "hint-name: %s\nframe:" % name)
+    (tmp_path / "x").write_text(body + "checksum: sha256 %s\nend\n" % files.sha256(body))
+    proof = tori.ProvedTorus.load(tmp_path / "x")
+    said = proof.report() + repr(proof) + repr(proof.torus)
+    assert proof.rotation.name == "golden" and "silver" not in said and "\x1b" not in said
 
 
 def test_damaged_files_are_refused(proof, tmp_path):

@@ -1,6 +1,7 @@
 """Proofs of tori: what must be proved, what must not, and that only the checker says so."""
 
 import dataclasses
+import re
 from fractions import Fraction as Q
 
 import numpy as np
@@ -59,7 +60,11 @@ def test_tori_are_proved(problem, rotation):
     assert frame == default_frame(family(problem)[0])
     assert set(map(type, alpha)) == {Q} and 0.7 * rho < piece.rho < 1.01 * rho
     assert proof.report().startswith("THEOREM\n  The map")
-    assert repr(proof).startswith("<ProvedTorus, rotation ")
+    assert repr(proof).startswith("<ProvedTorus: V = ") and "; rotation " in repr(proof)
+    said, bound = re.search("within (.*)>", repr(proof)).group(1), proof.distance
+    assert bound <= float(said) <= 1.1 * bound
+    assert "...." not in proof.report()
+    assert ("\n                 = [0; " in proof.report()) == (rotation.dimension == 1)
 
 
 def test_what_is_proved_is_what_the_file_says(circle, tmp_path):

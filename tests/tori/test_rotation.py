@@ -1,7 +1,8 @@
 """Rotation vectors: what is read, how exactly, and what is refused."""
 
+from dataclasses import replace
 from fractions import Fraction
-from math import cos, pi, sqrt
+from math import cos, floor, pi, sqrt
 
 import pytest
 from hypothesis import given, settings
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 from converse.check.field import evaluate, is_irreducible
 from converse.tori import Rotation, read_rotation
 from converse.tori.field import Field, real_roots
-from converse.tori.rotation import NAMES
+from converse.tori.rotation import NAMES, name_of, rotation_of
 
 
 def test_names_are_the_numbers_of_the_literature():
@@ -33,6 +34,45 @@ def test_what_is_written_is_read(name):
     again = read_rotation(rotation.text())
     assert (again.polynomial, again.vector) == (rotation.polynomial, rotation.vector)
     assert again.floats == rotation.floats and str(rotation) == name and str(again) == again.text()
+
+
+@pytest.mark.parametrize("text, fraction", [
+    ("golden", "[0; 1, 1, ...]"), ("silver", "[0; 2, 2, ...]"),
+    ("t^2+t-1: (89+t)/191", "[0; 2, 7, 1, 1, ...]"),
+    ("t^2-3: t", "[1; 1, 2, 1, 2, ...]"), ("t^2+t-1: -t", "[-1; 2, 1, 1, ...]"),
+    ("t^2-2: 1000001+t", "[1000002; 2, 2, ...]"),
+    ("t^2-1000099: t", "[1000; 20, 4, 1, 15, 13, 1, 12, 17, 57, 11, 2, 10, 1, 1, 21, 1, 2, 2, 1, "
+                       "17, 2, 13, 1, ...]")])
+def test_continued_fractions_are_periodic(text, fraction):
+    rotation = read_rotation(text)
+    assert rotation.continued_fraction() == fraction
+    (near, _), = rotation.turns(200)
+    for quotient in fraction[1:-6].replace(";", ",").split(","):
+        assert int(quotient) == floor(near)
+        near = 1 / (near - floor(near))
+
+
+def test_two_components_have_no_continued_fraction():
+    with pytest.raises(ValueError, match="two components"):
+        read_rotation("T49").continued_fraction()
+
+
+@pytest.mark.parametrize("number", [0.618, 1, (0.3, 0.4), None, b"golden"])
+def test_what_is_no_text_is_refused_in_words(number):
+    for read in (read_rotation, rotation_of):
+        with pytest.raises(TypeError, match="a text such as 'golden'"):
+            read(number)
+
+
+def test_a_name_is_that_of_the_vector():
+    """However the root is isolated; and vectors of different names are equal."""
+    golden, silver = map(read_rotation, ("golden", "silver"))
+    assert {name_of(read_rotation(name)) for name in NAMES} == set(NAMES)
+    assert name_of(replace(golden, name="silver", root=(Fraction(3, 5), Fraction(2, 3)))) == \
+        "golden"
+    assert name_of(replace(golden, root=(-2, -1))) == name_of(replace(
+        golden, vector=((1, 1),))) == ""
+    assert replace(golden, name="mine") == golden != silver
 
 
 def test_the_root_is_the_largest_or_the_one_that_is_named():
