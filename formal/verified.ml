@@ -637,17 +637,20 @@ let frame_text frame =
 
 let small_of z = truncate (float_of (ratio z (z_of 1)))
 
-(* Is it of the thesis's potential, with one parameter, or one for each of a, b, c or none? *)
+(* Is it stated in the thesis's a, b and c?  They are the parameters, or move together and none of them
+   downwards, or are fixed. *)
 let is_boxed patch =
   List.map (fun w -> small_of w.of_k0, small_of w.of_k1) patch = [1, 0; 0, 1; 1, 1]
   && List.for_all (fun w -> vanishes w.of_phase) patch
   && match List.length (List.hd patch).parts with
-  | 0 | 1 -> true
+  | 0 -> true
+  | 1 -> List.for_all (fun w -> not (less (List.hd w.parts) (whole 0))) patch
   | 3 -> List.for_all Fun.id (List.concat (List.mapi (fun i w ->
       List.mapi (fun m g -> i = m || vanishes g) w.parts) patch))
   | _ -> false
 
-(* What the file claims, in lines, as converse-check says it. *)
+(* What the file claims, in lines: in a, b and c as converse-check says it, or else in the parameters
+   t1, t2, t3 from -1 to 1. *)
 let claimed claim =
   let { m00; m01; m10; m11; centre0; half0; centre1; half1 } = claim.of_region in
   let patch = claim.of_patch in
@@ -655,11 +658,13 @@ let claimed claim =
   let frame = List.map small_of [m00; m01; m10; m11] in
   let on_range name centre half = range_text name (qminus centre half) (qplus centre half) in
   let any = if boxed || parameters > 0 then " for any parameters with" else " for" in
-  let graph = ["has no invariant Lagrangian graph"] in
   let last_of_graph =
     "(no invariant torus J = P + S'(y) over both angles, P constant, S periodic and C1)" in
-  let potential = if boxed then "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)"
-    else "V(y) = - the sum of A sin(k.y + phase) over the waves below" in
+  let potential =
+    if boxed then
+      ["V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1),";
+       "that is, J0' = J0 + a cos y0 + c cos(y0 + y1),"; "J1' = J1 + b cos y1 + c cos(y0 + y1),"]
+    else ["V(y) = - the sum of A sin(k.y + phase) over the waves below,"] in
   let where =
     if claim.of_whole then [last_of_graph ^ any]
     else
@@ -667,18 +672,12 @@ let claimed claim =
        "whose orbit goes from y = x* to y' = " ^ frame_text frame ^ " in the region";
        on_range "v0 / pi" centre0 half0; on_range "v1 / pi" centre1 half1;
        "(no other y' was examined, and the region is not the full torus)" ^ any] in
-  let rising = List.for_all (fun w -> not (List.exists (fun g -> less g (whole 0)) w.parts)) patch in
   let sum = List.fold_left (fun x g -> qplus x (absolute g)) (whole 0) in
   let ranges =
     if boxed then
       List.map2 (fun name w -> on_range name w.middle (sum w.parts)) ["a"; "b"; "c"] patch
       @ (if parameters <> 1 then []
-         else if rising then
-           ["moving together, on the segment from all lower to all upper ends"]
-         else
-           let listed f = String.concat ", " (List.map (fun w -> text_of (f w)) patch) in
-           [Printf.sprintf "moving together, (a, b, c) = (%s) + t (%s), -1 <= t <= 1"
-              (listed (fun w -> w.middle)) (listed (fun w -> List.hd w.parts))])
+         else ["moving together, on the segment from all lower to all upper ends"])
     else
       let names = List.init parameters (fun m -> Printf.sprintf "t%d" (m + 1)) in
       (if names = [] then [] else ["-1 <= " ^ String.concat ", " names ^ " <= 1"])
@@ -694,12 +693,19 @@ let claimed claim =
   let larger = match claim.of_once with
     | No -> []
     | Upper_end -> multiples
-                     (if not boxed then "these amplitudes at t1 = 1"
-                      else if rising then "the upper ends of these ranges"
-                      else "these parameters at t = 1")
+                     (if boxed then "the upper ends of these ranges"
+                      else "these amplitudes at t1 = 1")
     | Whole_patch -> multiples (if boxed then "such parameters" else "such amplitudes") in
-  ["THEOREM.  The map y' = y + J', J' = J - grad V(y) of two angles y (modulo 2 pi),";
-   potential ^ ", " ^ List.hd graph] @ List.tl graph @ where @ ranges @ larger
+  let present = List.filter (fun w -> not (List.for_all vanishes (w.middle :: w.parts))) patch in
+  let flat_in k = present <> [] && List.for_all (fun w -> small_of (k w) = 0) present in
+  let so k = Printf.sprintf "So the map of y%d alone has no rotational invariant circle." k in
+  let alone =
+    if not claim.of_whole then []
+    else if flat_in (fun w -> w.of_k1) then [so 0]
+    else if flat_in (fun w -> w.of_k0) then [so 1]
+    else [] in
+  ["THEOREM.  The map y' = y + J', J' = J - grad V(y) of two angles y (modulo 2 pi),"]
+  @ potential @ ["has no invariant Lagrangian graph"] @ where @ ranges @ larger @ alone
 
 (* The theorem, as far as it was verified; or the result of a spot check. *)
 let report file hints checked sampled =

@@ -15,6 +15,9 @@ NUMBER = re.compile(DECIMAL, re.ASCII)
 RATIO = re.compile("[+-]?[0-9]+/0*[1-9][0-9]*|" + DECIMAL, re.ASCII)
 THESIS = (1, 0), (0, 1), (1, 1)         # k of the three waves of the thesis
 IDENTITY, DIAGONALS = (1, 0, 0, 1), (1, 1, 1, -1)        # frames
+# A parameter's name; not one of these, which mean something else in a theorem.
+NAME = re.compile(r"[^\W\d]\w{0,30}(\[[0-9]{1,9}\])?")
+RESERVED = {"y", "y0", "y1", "J", "J0", "J1", "V", "P", "S", "pi", "sin", "cos"}
 LETTERS = "abcdefghijklmnopqrstuvwxyz"  # of parts, and of leaves linked to them
 
 
@@ -64,6 +67,11 @@ class Claim:
     @property
     def parameters(self):
         return len(self.waves[0].parts)
+
+    @property
+    def dimension(self):
+        """The number of angles of the map of which the file is: step (C29)."""
+        return 2 if any(wave.k[1] for wave in self.waves) else 1
 
     @property
     def moves(self):

@@ -20,7 +20,7 @@ from .cover import symmetries_used
 from .failures import NotConfirmed, Rejected, Unusable, named
 from .torus import is_at_once, torus_bound
 from .tree import check_mirror_images, leaves, tree_counts
-from .words import GRAPH, SYSTEM, TRIG, decimal_text
+from .words import GRAPH, THESIS_LINES, decimal_text
 
 REGIONS = {"b=0": (((1, 0, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0))),
            "a=b": (((1, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 1, 0))),
@@ -321,7 +321,7 @@ def proved_from(cells, radius):
 def mapped(file):
     """The claim of a map, in lines."""
     signs = len(sign_changes())
-    lines = [SYSTEM, TRIG + ", " + GRAPH[0], *GRAPH[1:]]
+    lines = [*THESIS_LINES, *GRAPH[2]]
     lines[-1] += " for any (a, b, c)"
     lines += ["in the %d proved cells of the file, for any multiple s >= 1 of those in its %d cells"
               % (file.count("P"), file.count("A")),

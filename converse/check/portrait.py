@@ -11,7 +11,7 @@ from .cover import CENTRE_BITS, reversal_centre
 from .failures import NotConfirmed, Rejected, named
 from .proof_file import header_fields, parse_waves, sealed
 from .tree import leaves
-from .words import decimal_text
+from .words import GRAPH, decimal_text, map_lines, ordinary_names, range_text
 
 FIRST_LINE = b"converse portrait 1"
 MAX_COLUMNS = 1 << 16                   # of a portrait
@@ -201,19 +201,12 @@ def check_column(column, strip):
 
 def portrayed(portrait):
     """The claim of a portrait, in lines."""
-    count, ranges = len(portrait.columns), any(map(any, [wave.parts for wave in portrait.waves]))
-    lines = ["THEOREM.  The map y' = y + J', J' = J - V'(y) of one angle y (modulo 2 pi),",
-             "V(y) = - the sum of A sin(k y + phase) over the waves below, has no rotational",
-             "invariant circle (no invariant graph J = P + S'(y), P constant, S periodic and C1)",
+    count = len(portrait.columns)
+    names = ordinary_names(len(portrait.waves[0].parts))
+    lines = [*map_lines(portrait.waves, names, 1), *GRAPH[1],
              "with y in a column and y', or its image by the reversal of time, in proved prisms",
-             "alone, and in none that is undecided, for%s" % (
-                 " any parameters with" * ranges)]
-    for wave in portrait.waves:
-        terms = [" %s %s t%d" % ("-" if g < 0 else "+", decimal_text(abs(g)), m)
-                 for m, g in enumerate(wave.parts, 1) if g]
-        lines += ["k = %d, phase = %s pi, A = %s" % (
-            wave.k[0], wave.phase, decimal_text(wave.middle) + "".join(terms))]
-    lines += ["-1 <= t <= 1"] * ranges
+             "alone, and in none that is undecided" + ", for any parameters with" * bool(names),
+             *[range_text(*ends) for ends in names]]
     lines += ["Columns : %d%s, y = x* %s" % (
         count, " and their mirror images about y = %s pi" % portrait.even
         if portrait.even is not None else "",

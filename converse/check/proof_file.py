@@ -6,10 +6,10 @@ import re
 from dataclasses import replace
 from fractions import Fraction
 
-from .claim import (ANGLES, DECIMAL, LETTERS, NUMBER, RATIO, Claim, Wave, check_alone, check_frame,
-                    number)
+from .claim import (ANGLES, LETTERS, NAME, NUMBER, RATIO, RESERVED, Claim, Wave, check_alone,
+                    check_frame, number)
 from .failures import NotConfirmed, Rejected, Unusable
-from .limits import MAX_CHARACTERS, MAX_K, MAX_LINE, MAX_WAVES
+from .limits import MAX_K, MAX_LINE, MAX_WAVES
 
 COUNTS = ("depth", "cuts", "proved", "symmetric", "linked", "undecided", "most_cuts")
 IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries", "reasons",
@@ -142,7 +142,7 @@ def parse(head, tree, sha256):
         pair(header["odd about"], "the header's odd about", RATIO)
     claim = Claim(waves, centre, half, frame, alone, xstar,
                   {name: int(header[name]) for name in COUNTS}, at_once, tree.replace("\n", ""),
-                  sha256, names=parameter_names(header.get("parameter", ()), len(waves[0].parts)))
+                  sha256, names=parameter_names(header.get("parameter", ()), waves))
     check_odd(claim, odd)
     if len(parts) > len(LETTERS):
         raise Rejected("there are more parts than letters")
@@ -152,12 +152,25 @@ def parse(head, tree, sha256):
                                        for text, letter in zip(parts, LETTERS)]))
 
 
-def parameter_names(lines, count):
-    """(name, value at t = -1, value at t = 1) of each parameter; () unless the lines name all."""
-    found = [re.fullmatch("([A-Za-z][A-Za-z0-9_]{0,39}) (%s) (%s)" % (DECIMAL, DECIMAL), line)
-             for line in lines if len(line) <= MAX_CHARACTERS]
-    return tuple([(name, Fraction(low), Fraction(high)) for name, low, high in map(
-        re.Match.groups, found)]) if len(lines) == len(found) == count and all(found) else ()
+def parameter_names(lines, waves):
+    """(name, value at t = -1, value at t = 1) of each parameter; () if the file names none.
+
+    A parameter that moves a wave must have two values: then it is an affine function of t, and t
+    one of it, so that the claim can be stated in it.
+    """
+    found = []
+    for at, line in enumerate(lines, 1):
+        title, words = "the header's parameter %d" % at, line.split(" ", 3)
+        if len(words) != 3 or not NAME.fullmatch(words[0]) or words[0] in RESERVED:
+            raise Rejected(title + " is not a name of a parameter and two numbers")
+        found.append((words[0], *[number(word, title) for word in words[1:]]))
+    count = len(waves[0].parts)
+    if found and (len(found) != count or len({name for name, _, _ in found}) != count):
+        raise Rejected("the header does not name each parameter once")
+    for at, (_, low, high) in enumerate(found):
+        if low == high and any(wave.parts[at] for wave in waves):
+            raise Rejected("the header's parameter %d has one value, and moves a wave" % (at + 1))
+    return tuple(found)
 
 
 def check_odd(claim, odd):

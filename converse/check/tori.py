@@ -23,7 +23,7 @@ from .processes import ProcessDied, in_order
 from .series import FINE, Box, Ring, conjugate, greatest, opposite, powers_of, turn
 from .signals import undisturbed
 from .version import __version__
-from .words import decimal_text
+from .words import decimal_text, exact_text, map_lines, sum_text
 
 MAX_LENGTH = 1 << 21                    # of a mode, with the weights alpha
 MAX_WIDTH = 200                         # of the strip of a torus, times its longest mode
@@ -809,26 +809,6 @@ def scientific(x, up=True):
     return "%d.%de%d" % (digits // 10, digits % 10, exponent)
 
 
-def exact_text(x):
-    """A rational number, as a decimal if it is a finite one."""
-    rest = x.denominator
-    for p in (2, 5):
-        while rest % p == 0:
-            rest //= p
-    return decimal_text(x) if rest == 1 else str(x)
-
-
-def sum_text(coefficients, names):
-    """The text of a sum of coefficients times names, without terms that are zero."""
-    text = ""
-    for x, name in zip(coefficients, names):
-        if x:
-            text += (" - " if x < 0 else " + ") if text else "-" * (x < 0)
-            text += name if abs(x) == 1 and name else " ".join(
-                filter(None, (exact_text(abs(x)), name)))
-    return text or "0"
-
-
 def existence_report(claim, setting, found):
     """The theorem and what it rests on."""
     n, worst = claim.dimension, max(found, key=lambda x: x.residual / x.needed)
@@ -836,25 +816,16 @@ def existence_report(claim, setting, found):
     omega = ", ".join(["%s = %s..." % (
         sum_text(element, POWERS), decimal_text(setting.field.truncated(element, places)))
         for element in claim.rotation])
-    lines = ["Verified :",
-             "THEOREM.  The map y' = y + J', J' = J - %s of %s (modulo 2 pi),"
-             % (("grad V(y)", "two angles y") if n == 2 else ("V'(y)", "an angle y")),
-             "V(y) = - the sum of A sin(k.y + phase) over the waves below, has an invariant "
-             + ("Lagrangian graph" if n == 2 else "circle"),
+    ranged = claim.pieces[0].low != claim.pieces[-1].high
+    lines = ["Verified :", *map_lines(claim.waves, [("s", Fraction(-1), Fraction(1))], n),
+             "has%s an invariant %s" % (" for all -1 <= s <= 1" * ranged,
+                                        "Lagrangian graph" if n == 2 else "circle"),
              "(J = P + S'(y) over %s, P constant, S periodic and real analytic), on which"
              % ("both angles" if n == 2 else "the angle"),
              "it is conjugate to the rotation by 2 pi omega,",
              "omega = (%s)" % omega if n == 2 else "omega = " + omega,
              "where t is the root of %s between %s and %s" % (
                  sum_text(map(Fraction, claim.polynomial), POWERS), *map(exact_text, claim.root))]
-    ranged = claim.pieces[0].low != claim.pieces[-1].high
-    lines[-1] += ", for all -1 <= s <= 1 and" if ranged else ", for"
-    for wave in claim.waves:
-        p = exact_text(wave.middle)
-        if any(wave.parts):
-            p += " %s %s s" % ("-" if wave.parts[0] < 0 else "+", exact_text(abs(wave.parts[0])))
-        lines.append("k = %s, phase = %s pi, A = %s" % (
-            "(%d, %d)" % wave.k if n == 2 else wave.k[0], exact_text(wave.phase), p))
     return lines + [
         "It is within %s of the file's: y = theta + u(theta)."
         % scientific(max(piece.distance for piece in found)), "",

@@ -1,12 +1,20 @@
 """The theorem that was verified, in words: neither more nor less."""
 
+import textwrap
 from fractions import Fraction
 
-from .claim import ANGLES, RANGES, THESIS
+from .claim import ANGLES, RANGES, THESIS, Wave, present
 from .cover import symmetries_used
 from .limits import PART, VERIFIED
 from .tree import leaf_text
 from .version import __version__
+
+WIDTH = 100                             # characters of a line
+GRAPH = {1: ["has no rotational invariant circle",
+             "(no invariant graph J = P + S'(y), P constant, S periodic and C1)"],
+         2: ["has no invariant Lagrangian graph",
+             "(no invariant torus J = P + S'(y) over both angles, P constant, S periodic and C1)"]}
+QUARTERS = ("sin", 1), ("cos", 1), ("sin", -1), ("cos", -1)     # sin(y + n pi/2): function, sign
 
 
 def decimal_text(x):
@@ -29,14 +37,28 @@ def decimal_text(x):
 
 
 def range_text(name, low, high):
-    low, high = decimal_text(low), decimal_text(high)
+    low, high = exact_text(low), exact_text(high)
     return "%s = %s" % (name, low) if low == high else "%s <= %s <= %s" % (low, name, high)
 
 
-SYSTEM = "THEOREM.  The map y' = y + J', J' = J - grad V(y) of two angles y (modulo 2 pi),"
-TRIG = "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)"
-GRAPH = ["has no invariant Lagrangian graph",
-         "(no invariant torus J = P + S'(y) over both angles, P constant, S periodic and C1)"]
+def exact_text(x):
+    """A rational number, as a decimal if it is a finite one."""
+    rest = x.denominator
+    for p in (2, 5):
+        while rest % p == 0:
+            rest //= p
+    return decimal_text(x) if rest == 1 else str(x)
+
+
+def sum_text(coefficients, names):
+    """The sum of rational numbers times names, without terms that are 0; the name "" is 1."""
+    text = ""
+    for x, name in zip(coefficients, names):
+        if x:
+            text += (" - " if x < 0 else " + ") if text else "-" * (x < 0)
+            text += name if abs(x) == 1 and name else " ".join(
+                filter(None, (exact_text(abs(x)), name)))
+    return text or "0"
 
 
 def frame_text(frame):
@@ -44,68 +66,125 @@ def frame_text(frame):
     return "(%s)" % ", ".join([sum_text(row, ANGLES) for row in (frame[:2], frame[2:])])
 
 
-def sum_text(coefficients, names):
-    """The sum of integers times names, without those that are 0."""
-    text = ""
-    for x, name in zip(coefficients, names):
-        if x:
-            text += (" - " if x < 0 else " + ") if text else "-" * (x < 0)
-            text += name if abs(x) == 1 else "%d %s" % (abs(x), name)
-    return text or "0"
+def amplitude_in(wave, names):
+    """The amplitude of the wave as a sum: its terms as (factor, name) without those that are 0.
+
+    names: of each parameter t of the wave (name, value at t = -1, value at t = 1).  The named
+    parameter is the affine function of t with these values, so the sum is exact.  The name of the
+    constant is "".
+    """
+    constant, moving = wave.middle, []
+    for g, (name, low, high) in zip(wave.parts, names):
+        if g:
+            slope = 2 * g / (high - low)
+            constant -= slope * (low + high) / 2
+            moving.append((slope, name))
+    return [(constant, "")] * bool(constant) + moving
 
 
-def affine_text(middle, parts):
-    """middle + the sum of factor name over the pairs (factor, name)."""
-    return " ".join([decimal_text(middle), *["%s %s %s" % ("-" if g < 0 else "+", decimal_text(
-        abs(g)), name) for g, name in parts if g]])
+def terms(waves, names, letters, factors, quarters):
+    """The terms factor A sin(k.y + phase + quarters pi/2) of the waves: numbers and what each of
+    them multiplies, in words."""
+    numbers, texts = [], []
+    for wave, factor in zip(waves, factors):
+        form, angle = amplitude_in(wave, names), sum_text(wave.k, letters)
+        function, sign = QUARTERS[quarters]
+        if (2 * wave.phase).denominator == 1:
+            function, sign = QUARTERS[int(2 * wave.phase + quarters) % 4]
+        else:
+            angle += " %s %s pi" % ("-" if wave.phase < 0 else "+", abs(wave.phase))
+        text = function + (" " + angle if angle in letters else "(%s)" % angle)
+        if len(form) > 1:
+            form = [(1, "(%s)" % sum_text(*zip(*form)))]
+        for x, name in form:
+            numbers.append(factor * sign * x)
+            texts.append((name + " " + text).strip())
+    return numbers, texts
+
+
+def map_lines(waves, names, dimension):
+    """The map, its potential and its force, exactly, in lines.  names: as of amplitude_in()."""
+    letters, momenta = ["y"] if dimension == 1 else ["y0", "y1"], []
+    for i, letter in enumerate(letters):
+        J = "J" + letter[1:]
+        numbers, texts = terms(waves, names, letters, [wave.k[i] for wave in waves], 1)
+        momenta.append("%s' = %s" % (J, sum_text([1, *numbers], [J, *texts])))
+    potential = sum_text(*terms(waves, names, letters, [-1] * len(waves), 0))
+    lines = ["THEOREM.  The map y' = y + J', J' = J - %s (modulo 2 pi)," % (
+        "V'(y) of one angle y" if dimension == 1 else "grad V(y) of two angles y")]
+    for text in "V(y) = " + potential, "that is, " + momenta[0], *momenta[1:]:
+        lines += textwrap.wrap(text + ",", WIDTH, subsequent_indent="    ", break_long_words=False,
+                               break_on_hyphens=False)
+    return lines
+
+
+def ordinary_names(count):
+    """The names of parameters that a file does not name: as of amplitude_in()."""
+    return tuple([("t%d" % m, Fraction(-1), Fraction(1)) for m in range(1, count + 1)])
+
+
+# The map of the thesis's potential, for any a, b and c.
+THESIS_LINES = map_lines(
+    [Wave(k, Fraction(0), Fraction(0), tuple([Fraction(m == j) for j in range(3)]))
+     for m, k in enumerate(THESIS)], [(name, Fraction(-1), Fraction(1)) for name in RANGES], 2)
 
 
 def is_boxed(claim):
-    """Is it of the thesis's potential, with one parameter, or one for each of a, b, c or none?"""
-    return tuple(wave.k for wave in claim.waves) == THESIS \
-        and not any(wave.phase for wave in claim.waves) \
-        and (claim.parameters < 2 or claim.parameters == 3 and not any(
-            g for w, wave in enumerate(claim.waves) for m, g in enumerate(wave.parts) if m != w))
+    """Is it stated in the thesis's a, b and c?  They are the parameters, or move together and none
+    of them downwards, or are fixed."""
+    return [(wave.k, wave.phase) for wave in claim.waves] == [(k, 0) for k in THESIS] \
+        and not claim.names and claim.parameters in (0, 1, 3) and all(
+            g >= 0 if claim.parameters == 1 else m == w or g == 0
+            for w, wave in enumerate(claim.waves) for m, g in enumerate(wave.parts))
+
+
+def successors(claim):
+    """The y' after x* that are examined, in units of pi: (name, lower end, upper end) of each
+    coordinate.  Of one angle, by step (C29), all that the region has of the first angle."""
+    if claim.dimension == 2:
+        return [(name + " / pi", c - h, c + h)
+                for name, c, h in zip(ANGLES, claim.centre, claim.half)]
+    c, h = [sum([f * x for f, x in zip(row, values)]) for row, values in (
+        (claim.frame[:2], claim.centre), (map(abs, claim.frame[:2]), claim.half))]
+    return [("y' / pi", c - h, c + h)]
 
 
 def claimed(claim):
     """The claim of a proof file, in lines."""
-    boxed, torus = is_boxed(claim), symmetries_used(claim) is not None
-    potential = TRIG if boxed else "V(y) = - the sum of A sin(k.y + phase) over the waves below"
-    lines = [SYSTEM, potential + ", " + GRAPH[0], *GRAPH[1:]]
-    if not torus:
-        lines += ["whose orbit goes from y = x* to y' = %s in the region" % frame_text(claim.frame),
-                  *(range_text(name + " / pi", c - h, c + h)
-                    for name, c, h in zip(ANGLES, claim.centre, claim.half)),
-                  "(no other y' was examined, and the region is not the full torus)"]
-    lines[-1] += " for any parameters with" if boxed or claim.parameters else " for"
-    if boxed:
-        spread = [sum(map(abs, wave.parts)) for wave in claim.waves]
-        lines += [range_text(name, wave.middle - x, wave.middle + x)
-                  for name, wave, x in zip(RANGES, claim.waves, spread)]
+    names = claim.names or ordinary_names(claim.parameters)
+    whole = symmetries_used(claim) is not None
+    if is_boxed(claim):
+        lines, larger = THESIS_LINES, "multiple s >= 1 of %s (B > 10/3)" % (
+            "the upper ends of these ranges" if claim.at_once == "upper end" else "such parameters")
+        ranges = [range_text(name, *sorted([wave.at([t] * claim.parameters) for t in (-1, 1)]))
+                  for name, wave in zip(RANGES, claim.waves)]
         if claim.parameters == 1:
-            rising = all(g >= 0 for wave in claim.waves for g in wave.parts)
-            lines += ["moving together, on the segment from all lower to all upper ends"
-                      if rising else "moving together, (a, b, c) = (%s) + t (%s), -1 <= t <= 1" % (
-                          ", ".join([decimal_text(wave.middle) for wave in claim.waves]),
-                          ", ".join([decimal_text(wave.parts[0]) for wave in claim.waves]))]
+            ranges += ["moving together, on the segment from all lower to all upper ends"]
     else:
-        names = ["t%d" % (m + 1) for m in range(claim.parameters)]
-        lines += ["-1 <= %s <= 1" % ", ".join(names)] * bool(names)
-        lines += ["where the input's %s is %s, from %s to %s" % (name, affine_text(
-            (low + high) / 2, [((high - low) / 2, t)]), decimal_text(low), decimal_text(high))
-            for (name, low, high), t in zip(claim.names, names)]
-        for wave in claim.waves:
-            lines += ["k = (%d, %d), phase = %s pi, A = %s" % (
-                *wave.k, wave.phase, affine_text(wave.middle, zip(wave.parts, names)))]
-    if claim.at_once != "no":
-        upper = "these amplitudes at t1 = 1" if not boxed else (
-            "the upper ends of these ranges" if claim.parameters == 1 and rising
-            else "these parameters at t = 1")
-        lines += ["and for any multiple s >= 1 of %s (B > 10/3)" % (
-            upper if claim.at_once == "upper end" else "such parameters" if boxed
-            else "such amplitudes")]
+        lines, larger = map_lines(claim.waves, names, claim.dimension), multiples(claim, names)
+        ranges = [range_text(name, *sorted(ends)) for name, *ends in names if ends[0] != ends[1]]
+    lines = [*lines, *GRAPH[claim.dimension]]
+    if not whole:
+        lines += ["whose orbit goes from y = x* to y'%s in the region" % (
+                      (" = " + frame_text(claim.frame)) * (claim.dimension == 2)),
+                  *[range_text(*ends) for ends in successors(claim)],
+                  "(no other y' was examined, and the region is not the full torus)"]
+    lines[-1] += " for any parameters with" * bool(ranges)
+    lines += [*ranges, *["and for any " + larger] * (claim.at_once != "no")]
+    flat = {tuple(map(bool, wave.k)) for wave in present(claim.waves)}
+    if whole and claim.dimension == 2 and flat in ({(True, False)}, {(False, True)}):
+        lines += ["So the map of y%d alone %s." % (flat == {(False, True)}, GRAPH[1][0])]
     return lines
+
+
+def multiples(claim, names):
+    """The larger potentials of which the claim may be.  If V is a parameter times a function, they
+    are those of this parameter beyond its value at t = 1."""
+    name, _, end = names[0] if claim.at_once == "upper end" else ("", 0, 0)
+    if end and {x for wave in claim.waves for _, x in amplitude_in(wave, names)} == {name}:
+        return "%s %s %s (since B > 10/3)" % (name, "><"[end < 0], exact_text(end))
+    return "multiple of %s, by a factor >= 1 (since B > 10/3)" % (
+        "V at %s = %s" % (name, exact_text(end)) if name else "such a V")
 
 
 def not_excluded(claim, ordinal, cell, why):
@@ -136,14 +215,13 @@ def report(claims, theorem, criterion, confirmed, pieces, doubles):
         places, claim = 9, criterion.claim
         bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
         if used:
-            lines += ["Successors : y' = %s," % frame_text(claim.frame)
-                      + ",".join([" " + range_text(name + " / pi", c - h, c + h) for name, c, h in
-                                  zip(ANGLES, claim.centre, claim.half)])
-                      + "; all others by " + " and ".join(used)]
-        lines += ["x*%s : %s %s" % (part.where and " of " + part.where,
-                                    *map(decimal_text, part.xstar)) for part in claims]
+            lines += ["Successors : %s; all others by %s" % (", ".join(
+                ["y' = " + frame_text(claim.frame)] * (claim.dimension == 2)
+                + [range_text(*ends) for ends in successors(claim)]), " and ".join(used))]
+        lines += ["x*%s : %s" % (part.where and " of " + part.where, " ".join(
+            map(decimal_text, part.xstar[:claim.dimension]))) for part in claims]
         lines += ["B : %s" % decimal_text(Fraction(bound, 10 ** places))]
-        if claim.alone is not None:
+        if claim.alone is not None and claim.dimension == 2:
             lines += ["Alone : y%d, since no wave depends on both angles" % claim.alone]
     lines += ["Leaves : %d, of which %d proved%s%s and %d symmetric" % (
         proved + skipped + linked + undecided, proved,

@@ -23,7 +23,8 @@ THESIS = (1, 0), (0, 1), (1, 1)         # the harmonics of a, b and c
 LINE = Fraction("11.21436")
 PLACES = 40                             # to which an end that is not a finite decimal is enclosed
 MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of k and of a frame
-NAME = re.compile(r"[^\W\d]\w{0,30}(\[\d+\])?")      # of a parameter
+NAME = re.compile(r"[^\W\d]\w{0,30}(\[[0-9]{1,9}\])?")      # of a parameter
+RESERVED = "J", "J0", "J1", "P", "S", "V", "cos", "pi", "sin", "y", "y0", "y1"     # of theorems
 CONSTANT = "constant"                   # the part of an amplitude that no parameter moves
 
 Range = Tuple[Number, Number]           # Ends are made of it
@@ -88,9 +89,9 @@ class SymplecticMap(Dynamics):
                   for m, ends in enumerate(self.ranges or [(-1, 1)] * len(slopes), 1)]
         names = tuple(self.names)
         for name in names:
-            if not isinstance(name, str) or not NAME.fullmatch(name):
-                raise ValueError("a parameter's name is a letter and then letters and digits, not "
-                                 "%.40r" % (name,))
+            if not isinstance(name, str) or not NAME.fullmatch(name) or name in RESERVED:
+                raise ValueError("a parameter's name is a letter and then letters and digits, and "
+                                 "none of %s, not %.40r" % (", ".join(RESERVED), name))
         if harmonics == tuple((*k, Fraction(0)) for k in THESIS) and not slopes:
             slopes = tuple(tuple(Fraction(m == j) for j in range(3)) for m in range(3))
             amplitude, ranges, names = (Fraction(0),) * 3, [(p, p) for p in amplitude], tuple("abc")

@@ -9,6 +9,7 @@ from .map import LINE
 from .potential import sum_text
 
 WIDTH, INDENT = 98, 11                  # characters of a line, and of the labels at its left
+QUARTERS = ("sin", 1), ("cos", 1), ("sin", -1), ("cos", -1)     # sin(y + n pi/2): function, sign
 LONGEST = 12                            # A value of epsilon with more digits is not printed.
 TORUS = {1: "rotational invariant circle", 2: "invariant torus"}        # by dimension
 
@@ -35,10 +36,19 @@ def whole(text):
 # ---- the map and its parameters
 
 def map_lines(problem):
-    """The map, with its potential, in lines."""
+    """The map, with its potential and its force, in lines."""
     gradient = "V'(y)" if problem.map.dimension == 1 else "grad V(y)"
     return indented(["The map  y' = y + J',  J' = J - %s,  y modulo 2 pi," % gradient,
-                     "with  V(y) = %s," % potential_text(problem)])
+                     "with  V(y) = %s," % potential_text(problem), *_force(problem)])
+
+
+def _force(problem):
+    """The same map without V: J' = J + K sin y, or a line for each component."""
+    lines = []
+    for i, letter in enumerate(["J"] if problem.map.dimension == 1 else ["J0", "J1"]):
+        lines += ["%s' = %s%s," % (letter, letter, _harmonics(
+            problem, [wave[i] for wave in problem.waves], 1))]
+    return ["that is,  " + lines[0], *lines[1:]]
 
 
 def indented(lines):
@@ -51,30 +61,30 @@ def ended(lines):
 
 
 def potential_text(problem):
-    """V in the problem's parameters, exactly: -p sin(k.y + phi) is written as a cosine where phi
-    is a multiple of pi/2."""
+    """V in the problem's parameters, exactly."""
+    text = _harmonics(problem, [-1] * len(problem.waves), 0)
+    return "-" * text.startswith(" -") + text[3:] or "0"
+
+
+def _harmonics(problem, factors, quarters):
+    """The sum of factor p sin(k.y + phi + quarters pi/2), exactly, each term with its sign: it is
+    written with k.y alone where phi is a multiple of pi/2."""
     letters, text = ("y", "") if problem.map.dimension == 1 else ("y0", "y1"), ""
-    for (k0, k1, phase), form in zip(problem.waves, _forms(problem)):
-        angle, sign, function = sum_text(zip((k0, k1), letters)), -1, "sin"
-        if (2 * phase).denominator == 1:        # phase is -1/2, 0, 1/2 or 1
-            sign = 1 if phase in (1, Fraction(-1, 2)) else -1
-            function = "cos" if phase.denominator == 2 else "sin"
+    for (k0, k1, phase), form, factor in zip(problem.waves, _forms(problem), factors):
+        angle, (function, sign) = sum_text(zip((k0, k1), letters)), QUARTERS[quarters]
+        if (2 * phase).denominator == 1:
+            function, sign = QUARTERS[int(2 * phase + quarters) % 4]
         elif phase:
             angle += " %s %s pi" % ("-" if phase < 0 else "+", abs(phase))
         terms = [(x, name) for name, x in form.items() if x]
-        if not terms:
-            continue
-        if len(terms) == 1:
-            (x, name), = terms
-            sign *= -1 if x < 0 else 1
-            factor = " ".join(filter(None, (
-                "" if abs(x) == 1 and name else number_text(abs(x)), name)))
-            factor = "" if factor == "1" else factor + " "
-        else:
-            factor = "(%s) " % sum_text(terms, number_text)
-        text += " %s %s%s" % ("-" if sign < 0 else "+", factor,
-                              function + (" " + angle if angle in letters else "(%s)" % angle))
-    return ("-" + text[3:] if text.startswith(" -") else text[3:]) or "0"
+        if len(terms) > 1:
+            terms = [(1, "(%s)" % sum_text(terms, number_text))]
+        for x, name in terms if factor else ():
+            x *= factor * sign
+            text += (" - " if x < 0 else " + ") + " ".join(filter(None, (
+                "" if abs(x) == 1 else number_text(abs(x)), name, function)))
+            text += " " + angle if angle in letters else "(%s)" % angle
+    return text
 
 
 def _forms(problem):

@@ -13,6 +13,7 @@ import itertools
 import json
 import math
 import multiprocessing
+import operator
 import os
 import random
 import re
@@ -285,18 +286,71 @@ def test_halves_angles_that_only_a_longer_orbit_feels(texts, run):
         assert status == 3 and 3 <= int(re.search("in ([0-9]+) pieces", out).group(1)) < 100, err
 
 
-def test_parameters_have_the_names_of_the_input(run, tmp_path):
-    """Where the file names them; nothing else of that field reaches a terminal."""
+def test_the_theorem_is_stated_in_the_named_parameters(run, tmp_path):
+    """What a name means is derived from the waves: other ends of it give another amplitude."""
     prove(StandardMap(("2.5", "3"))).save(tmp_path / "proof")
     text = (tmp_path / "proof").read_text(encoding="utf-8")
-    named = "\nwhere the input's k is 2.75 + 0.25 t1, from 2.5 to 3\n"
-    assert "\n-1 <= t1 <= 1" + named in run(text)[1]
-    for line in "parameter: \033k 2.5 3", "parameter: k 2.5 nan", "parameter: k 2.5":
-        status, out, _ = run(sealed(text.replace("parameter: k 2.5 3", line)))
-        assert status == 0 and "the input's" not in out and "\033" not in out
+    for line, V, force, ends in (
+            ("k 2.5 3", "k cos y", "k sin y", "2.5 <= k <= 3\nand for any k > 3 "),
+            ("k 3 2.5", "(5.5 - k) cos y", "(5.5 - k) sin y", "2.5 <= k <= 3\nand for any multiple "
+             "of V at k = 2.5, by a factor >= 1 "),
+            ("\u03b5[1] 0.001 0.002", "(2 + 500 \u03b5[1]) cos y", "(2 + 500 \u03b5[1]) sin y",
+             "0.001 <= \u03b5[1] <= 0.002\nand for any multiple of V at \u03b5[1] = 0.002, "),
+            ("K -1 -1.2", "-2.5 K cos y", "- 2.5 K sin y",
+             "-1.2 <= K <= -1\nand for any K < -1.2 "),
+            ("K 0 3", "(2.5 + 1/6 K) cos y", "(2.5 + 1/6 K) sin y", "0 <= K <= 3\n")):
+        status, out, _ = run(sealed(with_field(text, "parameter", line)))
+        assert "\nV(y) = %s,\nthat is, J' = J %s,\n" % (V, force if force[0] == "-"
+                                                       else "+ " + force) in out
+        assert (status, out.count("for any parameters with\n" + ends)) == (0, 1)
+    for line, why in (
+            ("\033k 2.5 3", "not a name"), ("k\u202e 2 3", "not a name"), ("J 2 3", "not a name"),
+            ("k 2.5", "not a name of a parameter and two numbers"), ("k 2.5 nan", "not a decimal"),
+            ("k 3 3", "has one value"), ("k 2 3\nparameter: l 2 3", "each parameter once"),
+            ("k 2 " + "3" * 1001, "limit")):
+        status, out, err = run(sealed(with_field(text, "parameter", line)))
+        assert status == (5 if why == "limit" else 1) and why in err and err[:-1].isprintable()
     for name in ("v0", "v1"):
         text = with_field(text, name, "1 0.001")
-    assert run(sealed(text))[1].count(" in 1 piece\n") == 1
+    out = run(sealed(text))[1]
+    assert "so that" not in out and "full torus) for any parameters with\n2.5 <= k <= 3\n" in out
+
+
+def formula(text, values):
+    """The value of what a theorem says V or a momentum is."""
+    text = re.sub(r"([\w)]) (?=[a-z(])", r"\1 * ", re.sub("(sin|cos) (y[01]?)", r"\1(\2)", text))
+    return eval(text, {"sin": math.sin, "cos": math.cos, "pi": math.pi, **values})
+
+
+@pytest.mark.parametrize("dimension", [1, 2])
+def test_the_map_of_a_theorem_is_that_of_the_waves(generator, dimension):
+    """V and the force, read from the theorem, at random points and parameters."""
+    def number(least=0):
+        return Fraction(generator.randint(least, 4), generator.choice((1, 2, 3, 7)))
+    for count in [0, 1, 2, 3] * 8:
+        ends = [(x := number(), x + number(1)) for _ in range(count)]
+        names = [("p%d" % m, *generator.sample(each, 2)) for m, each in enumerate(ends)]
+        waves = [check.Wave((generator.randint(-2, 2), generator.randint(-2, 2) * (dimension - 1)),
+                            number(-4) * generator.choice((1, Fraction(1, 2))), number(-4),
+                            tuple([number(-4) for _ in names])) for _ in range(3)]
+        lines = check.map_lines(waves, names, dimension)
+        said = dict(re.findall(r"(V\(y\)|J[01]?') = ((?:[^J,]|J[01]?\b(?!'))+),",
+                               " ".join(" ".join(lines[1:]).split())))
+        letters = ["y"] if dimension == 1 else ["y0", "y1"]
+        t = [generator.uniform(-1, 1) for _ in names]
+        y = {letter: generator.uniform(-4, 4) for letter in letters}
+        values = {**y, **{name: float(low + high) / 2 + x * float(high - low) / 2
+                          for (name, low, high), x in zip(names, t)}}
+        angles = [sum(map(operator.mul, wave.k, y.values())) + math.pi * wave.phase
+                  for wave in waves]
+        sizes = [float(wave.at(t)) for wave in waves]
+        assert math.isclose(formula(said["V(y)"], values), -sum(
+            map(operator.mul, sizes, map(math.sin, angles))), abs_tol=1e-9)
+        for i, letter in enumerate(letters):
+            J = "J" + letter[1:]
+            assert math.isclose(formula(said[J + "'"], {**values, J: 7.0}), 7 + sum(
+                [wave.k[i] * size * math.cos(angle)
+                 for wave, size, angle in zip(waves, sizes, angles)]), abs_tol=1e-9)
 
 
 def test_same_output_for_any_jobs(deep, run):
@@ -3093,8 +3147,8 @@ def test_confirms_other_potentials(others, run, name):
     assert tree_of(text).count("P") > 3 and "multiple" not in out
     waves, more, _ = PROBLEMS[name]
     if name == "with harmonics":
-        assert "\n-1 <= t1, t2 <= 1\n" in out
-        assert "\nk = (2, 0), phase = -1/3 pi, A = 0.1 + 0.02 t2\n" in out
+        assert "\n-1 <= t1 <= 1\n-1 <= t2 <= 1\n" in out
+        assert " - (0.1 + 0.02 t2) sin(2 y - 1/3 pi)" in out
     assert ("Alone : y0" in out) == (name == "one alone")
     assert run(text, "--exact")[0] == 0 or len(tree_of(text)) > 300
 

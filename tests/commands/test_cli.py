@@ -402,8 +402,9 @@ def test_a_potential_of_ones_own(run, root, tmp_path):
     assert (status, err) == (1, "") and out.startswith("UNDECIDED: ")
     status, out, err = run("-r", path, "-d", "120")
     assert (status, err) == (0, "")
-    assert "  with  V(y) = K cos y,\n  has no rotational invariant circle\n" \
-        "  for every K in [0.976, 1.34]\n  and for every K > 1.34.\n" in out
+    assert "  with  V(y) = K cos y,\n  that is,  J' = J + K sin y,\n" \
+        "  has no rotational invariant circle\n  for every K in [0.976, 1.34]\n" \
+        "  and for every K > 1.34.\n" in out
 
 
 @pytest.mark.parametrize("arguments, words", [

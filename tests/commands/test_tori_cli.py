@@ -325,7 +325,8 @@ def test_a_range_is_told_exactly():
                 ("K", Fraction("0.2"), Fraction("0.3"))])), "K cos y - 0.01 sin(2 y)",
              "every K in [0.2, 0.3]")):
         out = report.undecided(problem, golden, tori.NotProved("it lacks"))
-        assert "  with  V(y) = %s,\n  was examined for %s.\n" % (V, words) in out
+        assert "  with  V(y) = %s,\n  that is,  J' = J " % V in out
+        assert ",\n  was examined for %s.\n" % words in out
     proof = tori.prove(problem, golden)
     theorem = report.verdict(proof, problem=problem)
     assert "  with  V(y) = K cos y - 0.01 sin(2 y),\n" in theorem

@@ -11,7 +11,7 @@ import pytest
 from converse import Counts, Problem, Proof, prove
 from converse.model.map import MuldoonMap, SymplecticMap, from_patch
 from converse.model.problem import IDENTITY
-from converse.model.statement import conditions, potential_text
+from converse.model.statement import conditions, map_lines, potential_text
 from converse.prover import run
 from converse.prover.report import header, report, verdict
 from converse.version import __version__
@@ -51,6 +51,8 @@ def test_the_sharper_method_in_its_own_words(made_up):
     assert text.startswith(
         "THEOREM\n  The map  y' = y + J',  J' = J - grad V(y),  y modulo 2 pi,\n"
         "  with  V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1),\n"
+        "  that is,  J0' = J0 + a cos y0 + c cos(y0 + y1),\n"
+        "  J1' = J1 + b cos y1 + c cos(y0 + y1),\n"
         "  has no invariant torus J = P + S'(y) over both angles, P constant, S periodic and C1\n"
         "  for every a in [0.30725, 0.30975], b in [0.30725, 0.30975], c in [0.6145, 0.6195].\n\n"
         "Verify     with -b FILE the proof is kept; converse-check FILE verifies it\n"
@@ -230,8 +232,11 @@ def value(text, **names):
     named((1, 0), ("-0.5", "0.25"), ("0.5", 0), (0, 0), waves=(SIN, COS, (0, 1), (1, 1))),
 ], ids=range(4))
 def test_the_potential_is_the_maps(problem):
-    """At the ends of all parameters and several angles."""
+    """At the ends of all parameters and several angles, and so is the force."""
     text = potential_text(problem)
+    forces = re.findall(r"J[01]?' = J[01]?( [+-] [^,]*|)(?=,)", " ".join(
+        " ".join(map_lines(problem)[1:]).split()))
+    assert len(forces) == problem.map.dimension
     for t in itertools.product((-1, 1), repeat=len(problem.parts)):
         ends = {name: float(high if sign > 0 else low)
                 for (name, low, high), sign in zip(problem.parameters, t)}
@@ -241,6 +246,12 @@ def test_the_potential_is_the_maps(problem):
                      for (k0, k1, phase), p, *parts
                      in zip(problem.waves, problem.amplitude, *problem.parts))
             assert abs(value(text, y=y0, y0=y0, y1=y1, t=(0, *t), **ends) - V) < 1e-12
+            for i, force in enumerate(forces):
+                push = sum(wave[i] * float(p + sum(x * part for x, part in zip(t, parts)))
+                           * math.cos(wave[0] * y0 + wave[1] * y1 + math.pi * float(wave[2]))
+                           for wave, p, *parts
+                           in zip(problem.waves, problem.amplitude, *problem.parts))
+                assert abs(value("0" + force, y=y0, y0=y0, y1=y1, t=(0, *t), **ends) - push) < 1e-12
 
 
 @pytest.mark.parametrize("problem, V, lines", [
@@ -293,7 +304,7 @@ def test_the_theorem_of_a_circle(made_up):
     proof = made_up("P", method="loewner", xstar=("1.5", "0")).with_tree(0, problem=named((1, 0)))
     assert report(proof).startswith(
         "THEOREM\n  The map  y' = y + J',  J' = J - V'(y),  y modulo 2 pi,\n"
-        "  with  V(y) = K cos y,\n"
+        "  with  V(y) = K cos y,\n  that is,  J' = J + K sin y,\n"
         "  has no rotational invariant circle\n  for every K in [0.9, 1.4].\n\n")
     assert "\nStart      x* = 1.5\n" in report(proof)
     assert "UNDECIDED: nothing is proved.  There may be a rotational invariant circle (see " in \
