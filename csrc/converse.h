@@ -7,6 +7,7 @@
 enum {
     CV_OK = 0,
     CV_RUNNING = 1,          /* the search wants to be stepped again */
+    CV_LONG = 2,             /* the next prism needs a longer orbit than was allowed */
     CV_ENOMEM = -1,
     CV_ENUMBER = -2,         /* a string is not a decimal number, or out of range */
     CV_EARGUMENT = -3,       /* an argument makes no sense (a negative half-width, dp < 1, ...) */
@@ -94,7 +95,8 @@ typedef struct {
    (0, 1) and (1, 1) in this order, without phases.  Its method takes only these, each with a
    separate parameter, in the identity frame and without shifts.
    xstar: the two coordinates of the starting point, or NULL to have one chosen.
-   longest: the most points of an orbit, or 0 for as many as the method can follow.
+   longest: the most points of an orbit, or 0 for as many as the method can follow.  -n: n points,
+   and cv_step returns CV_LONG instead of deciding a prism whose orbit may need more.
    On success *s must be freed with cv_search_free.  It begins with the root as its only prism. */
 int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xstar[2], int method,
                   int dp, int depth, int stubborn, int as_printed, int longest);
@@ -115,6 +117,7 @@ int cv_resume(cv_search *s, const char *tree, size_t length);
 /* Decides at most max_leaves further prisms, or follows orbits of about max_points in all, or works
    for about max_seconds; stopped, it forgets the prism at hand.  CV_RUNNING: there is more to do.
    CV_OK: all prisms are decided, or an undecided one ended a search that is not stubborn.
+   CV_LONG: see cv_search_new; the tree so far does not depend on `longest`.
    CV_ENOMEM: the tree is good as far as it was grown.  CV_EMACHINE: the arithmetic breaks the
    rules, before the step or after it: nothing that the search did since cv_restart may be used. */
 int cv_step(cv_search *s, long max_leaves, double max_points, double max_seconds,

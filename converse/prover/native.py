@@ -139,7 +139,8 @@ ORDINARY = 4000
 @dataclass(frozen=True)
 class Task:
     """All that a worker must know of a search, as plain data.  xstar None: one is to be chosen.
-    longest: the most points of an orbit; 0: as many as the core can follow."""
+    longest: the most points of an orbit; 0: as many as the core can follow; -n: n points, and the
+    search ends before a prism whose orbit may need more."""
 
     problem: Problem
     settings: Settings
@@ -162,12 +163,14 @@ class Begun:
 
 @dataclass
 class Grown:
-    """The result of a worker: the text, the cells that follow it, the lengths of orbits."""
+    """The result of a worker: the text, the cells that follow it, the lengths of orbits; long: may
+    the first of the cells need a longer orbit than the task allows?"""
 
     text: str
     steps: List[int]                    # of each node; empty if nobody wants them
     cells: List[tuple]
     counts: Counts
+    long: bool = False
 
 
 def native_text(text, owners):
@@ -244,12 +247,12 @@ class Search:
         """Decides cells, and the cells that they are cut into, until about `seconds` passed or
         there are max_leaves leaves or max_points points of orbits."""
         check(lib.cv_restart(self.handle, len(cells), cells))
-        check(lib.cv_step(self.handle, max_leaves, max_points, seconds, _handle(stop)))
+        code = check(lib.cv_step(self.handle, max_leaves, max_points, seconds, _handle(stop)))
         size = ffi.new("size_t *")
         text, size = lib.cv_tree(self.handle, size), size[0]
         return Grown(ffi.unpack(text, size).decode("ascii") if size else "",
                      ffi.unpack(lib.cv_steps(self.handle), size) if size and want_steps else [],
-                     *self._state())
+                     *self._state(), long=code == lib.CV_LONG)
 
     def _state(self):
         pending = ffi.new("cv_cell[]", lib.cv_pending(self.handle, ffi.NULL))

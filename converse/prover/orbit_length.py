@@ -2,14 +2,15 @@
 
 Close above the parameter where the last circle breaks, proofs need orbits of many thousand points.
 Close below it, and at any parameter with a circle, such orbits take a minute and prove nothing.
-So before the search a few of the thinnest prisms are tried with long orbits.  If one of them
-is not proved, no search can prove the prisms around it, and the search follows short orbits only.
+So when a search meets a prism that needs a long orbit, a few of the thinnest prisms are tried with
+long orbits.  If one of them is not proved, no search can prove the prisms around it, and the search
+follows short orbits only.
 
 No theorem rests on this choice: it decides how much is tried."""
 
 from itertools import product
 from math import inf
-from typing import List, Sequence, Tuple
+from typing import List, Optional, Sequence, Tuple
 
 from . import native
 from .settings import Settings
@@ -23,36 +24,36 @@ FIRST, FINER, AROUND = 6, 3, 3
 TRY_POINTS = 1 << 15
 
 
-def longest(problem, xstar) -> int:
+def longest(problem, xstar, stop=None) -> Optional[int]:
     """The most points of an orbit in a search over x*, or 0 for as many as the core can follow.
+    None if it was stopped.
 
     No proof is known to need more than native.ORDINARY where waves depend on two combinations of
     the angles."""
     ends = product(*((0, (1 << CUTS) - 1) if any(part) else (0,) for part in problem.parts))
-    if not problem.is_flat or not all(_all_proved(problem, xstar, end) for end in ends):
-        return native.ORDINARY
-    return 0
+    long = problem.is_flat and all(_all_proved(problem, xstar, end, stop) for end in ends)
+    if stop is not None and stop.is_set():
+        return None
+    return 0 if long else native.ORDINARY
 
 
-def _all_proved(problem, xstar, end: Sequence[int]) -> bool:
+def _all_proved(problem, xstar, end: Sequence[int], stop) -> bool:
     """Are the thinnest prisms proved, as far as they are tried, at this corner of the parameters'
-    ranges?"""
+    ranges?  The answer means nothing if it was stopped."""
     settings = Settings("loewner", CUTS * (1 + len(end)), stubborn=True)
     search = native.Search(native.Task(problem, settings, xstar, TRY_POINTS))
-    search.prepare(None)
     axis, level, places = _axis(problem), FIRST, list(range(1 << FIRST))
-    while True:
+    while search.prepare(stop):
         grown = search.grow([_thinnest(axis, level, place, end) for place in places], inf,
-                            len(places), None, True)
-        if "U" in grown.text:
-            return False
-        if level == CUTS:
-            return True
+                            len(places), stop, True)
+        if "U" in grown.text or level == CUTS:
+            return "U" not in grown.text
         best = sorted(zip(grown.steps, places), reverse=True)[:AROUND]
         finer = min(level + FINER, CUTS)
         places = [(place << finer - level) + j for _, place in best
                   for j in range(1 << finer - level)]
         level = finer
+    return False
 
 
 def _axis(problem) -> int:

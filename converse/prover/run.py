@@ -160,7 +160,8 @@ class _Run:
         self.number, self.search = 0, None      # of that tree, and its search
         self.counts = before.counts             # when that began
         self.tried = set()                      # trees for which others were looked for
-        self.longest = None                     # the most points of an orbit, when that is known
+        # The most points of an orbit in all trees.  None: that is asked when a prism needs more.
+        self.longest = None if before.problem.is_flat else native.ORDINARY
 
     def run(self):
         try:
@@ -188,7 +189,8 @@ class _Run:
         """Grows one of the trees; False if time is up first.  Growing also ends when the tree turns
         out to be so hard that other starting points are to be looked for."""
         problem, text = self._tree.problem, self._tree.text
-        task = Task(problem, self.proof.settings, self._tree.xstar, self._longest())
+        task = Task(problem, self.proof.settings, self._tree.xstar,
+                    -native.ORDINARY if self.longest is None else self.longest)
         with TreeSearch(task, self.jobs, self.executor, self.on_leaf is not None) as search:
             counts = self.counts = self.proof.counts
             if self.proof.parts:
@@ -207,23 +209,27 @@ class _Run:
             self.search = search
             self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
             self._look()
-            while not (search.finished or self._is_hard()) and self._seconds_left() > 0:
+            while not (search.finished or search.long or self._is_hard()) and \
+                    self._seconds_left() > 0:
                 search.work(min(LOOK_SECONDS, max(0.0, self._seconds_left())))
                 self._look()
             search.settle()
             self._look()
             ended = search.finished or self._is_hard()
             self.proof, self.search = self._snapshot(), None
-            return ended
+        if search.long and not ended:
+            return self._knows_longest() and self._grow()
+        return ended
 
-    def _longest(self):
-        """The most points of an orbit: the first tree tells it for all."""
-        if self.proof.settings.method != "loewner" or self._seconds_left() <= 0:
-            return native.ORDINARY
+    def _knows_longest(self):
+        """Finds out how long orbits may become, which the first tree tells for all; False if time
+        is up first."""
         if self.longest is None:
             first = self.proof.trees[0]
-            self.longest = longest(first.problem, first.xstar)
-        return self.longest
+            with WorkerPool(None, 1, native.Stop()) as pool:
+                self.longest, = pool.results(
+                    self._seconds_left_told, [(longest, first.problem, first.xstar)])
+        return self.longest is not None
 
     @property
     def _tree(self):
@@ -264,21 +270,20 @@ class _Run:
     def _link(self):
         """Links what the tree leaves undecided to new parts, if some are found."""
         problem = self._tree.problem
-        if not self._may_link():
+        if not (self._may_link() and self._knows_longest()):
             return False
         undecided = not self._is_long()
         self.tried.add(self.number)
 
-        def seconds_left():             # asked for again and again meanwhile
+        def seconds_left():
             workers.check()
-            self._show(self.share, self.proof.counts)
-            return self._seconds_left()
+            return self._seconds_left_told()
 
         with WorkerPool(self.executor) as workers, \
                 WorkerPool(None, self.jobs, native.Stop()) as pool:
             found = plan(problem, self.proof.depth, self._tree.xstar, undecided,
                          Fraction(self.proof.constants["B"]), len(self.proof.parts),
-                         self._longest(), pool, seconds_left)
+                         self.longest, pool, seconds_left)
         if found is None:
             return False
         proof = self.proof.with_tree(self.number, text=found.tree, pending=())
@@ -293,6 +298,11 @@ class _Run:
 
     def _seconds_left(self):
         return self.end - time.monotonic()
+
+    def _seconds_left_told(self):
+        """This is asked for again and again while no tree grows."""
+        self._show(self.share, self.proof.counts)
+        return self._seconds_left()
 
     def _show(self, share, counts):
         if self.progress:

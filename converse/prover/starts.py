@@ -21,7 +21,6 @@ from .links import (Link, Links, Target, clusters, crests, hull_of, linked_tree,
 from .proof import Tree
 from .settings import Settings
 from .shifts import best_shifts
-from .workers import LOOK_SECONDS
 
 LOOK_DEPTH = 24                         # cuts of the first tree that is clustered
 DEEPER = 4                              # cuts, by which the next such tree is deeper
@@ -130,15 +129,8 @@ def _whole(problem, xstar, cuts, survey, points):
 
 def _surveys(pool, seconds_left, tasks, leaves, points=inf):
     """The trees of the tasks, of `leaves` leaves or `points` points each; [] if time was up."""
-    for key, task in enumerate(tasks):
-        pool.give(key, native.survey, task, leaves, points, here=True)
-    found = {}
-    while len(found) < len(tasks):
-        seconds = seconds_left()
-        if seconds <= 0:
-            pool.stop.set()
-        found.update(pool.take(seconds if seconds > 0 else LOOK_SECONDS))
-    return [] if None in found.values() else [found[key] for key in range(len(tasks))]
+    found = pool.results(seconds_left, [(native.survey, task, leaves, points) for task in tasks])
+    return [] if None in found else found
 
 
 class _Image:

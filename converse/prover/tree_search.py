@@ -11,7 +11,7 @@ from dataclasses import replace
 from ..storage.signals import Resource
 from . import native, tree
 from .native import Counts
-from .workers import LOOK_SECONDS, WorkerPool
+from .workers import WorkerPool
 
 MANY = 2 ** 30                      # No task grows 2^30 leaves.
 ALONE_SECONDS = 0.03                # One thread works for this time before the work is divided.
@@ -56,6 +56,7 @@ class TreeSearch(Resource):
         self.want_steps, self.stubborn = want_steps, task.settings.stubborn
         self.parts, self.statistics = [], Counts()
         self.changes = 0                    # under way: see _change
+        self.long = False                   # may a prism need longer orbits than the task allows?
 
     def acquire(self):
         self.pool.acquire()
@@ -71,14 +72,8 @@ class TreeSearch(Resource):
 
         hints: of the untried prisms, in their order."""
         began = time.monotonic()
-        self.pool.give(None, native.begin, self.task, text.translate(LINKED_AS_PROVED), here=True)
-        done = []
-        while not done:
-            seconds = seconds_left()
-            if seconds <= 0:
-                self.pool.stop.set()
-            done += self.pool.take(seconds if seconds > 0 else LOOK_SECONDS)
-        (_, begun), = done
+        begun, = self.pool.results(
+            seconds_left, [(native.begin, self.task, text.translate(LINKED_AS_PROVED))])
         if begun is None:
             return None
         self.task = replace(self.task, xstar=begun.xstar)
@@ -175,6 +170,7 @@ class TreeSearch(Resource):
             part.append([grown.text], grown.steps, tree.count(grown.text))
             part.cells = grown.cells
             self.statistics += grown.counts
+        self.long |= grown.long
 
     def _queue(self):
         """The parts that wait for a worker, in preorder."""
@@ -220,7 +216,7 @@ class TreeSearch(Resource):
             for part, grown in self.pool.take(max(0.0, end - time.monotonic())):
                 self._take(part, grown)
                 came = True
-                stopped = stopped or (part.stopped and not self.stubborn)
+                stopped = stopped or self.long or (part.stopped and not self.stubborn)
             if not (queue or running) or (came and not queue) or stopped or \
                     time.monotonic() >= end:
                 break

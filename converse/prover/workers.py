@@ -102,6 +102,19 @@ class WorkerPool(Resource):
                 self._failed(error, task)
                 self._submit(replace(task, attempts=task.attempts - 1))
 
+    def results(self, seconds_left, calls):
+        """What these calls return, each (function, *arguments), which threads of this process make.
+        They are stopped when seconds_left(), asked for a few times a second, falls to 0."""
+        for key, call in enumerate(calls):
+            self.give(key, *call, here=True)
+        found = {}
+        while len(found) < len(calls):
+            seconds = seconds_left()
+            if seconds <= 0:
+                self.stop.set()
+            found.update(self.take(seconds if seconds > 0 else LOOK_SECONDS))
+        return [found[key] for key in range(len(calls))]
+
     def settle(self, seconds):
         """Ends the work: yields (key, result) of the tasks that are done within `seconds`, and
         cancels the others."""

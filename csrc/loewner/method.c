@@ -1,5 +1,6 @@
 /* method.c - the sharper method as a search sees it. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "model/torus.h"
@@ -31,7 +32,8 @@ static waves potential_of(const patch *p, double t, numbers *room)
 static int loewner_accepts(const patch *p, const precision *how)
 {
     (void)p;
-    return how->as_printed || how->longest > MAX_POINTS ? CV_EARGUMENT : CV_OK;
+    return how->as_printed || how->longest < -MAX_POINTS || how->longest > MAX_POINTS ? CV_EARGUMENT
+                                                                                      : CV_OK;
 }
 
 /* How much the waves bend at most, if all k have the same direction. */
@@ -71,7 +73,7 @@ static int find_at_once(const loewner *w, const patch *p)
 static int loewner_prepare(void **work, const patch *p, const precision *how,
                            apm_t constants[CV_N_CONSTANTS], int *at_once)
 {
-    loewner *const w = *work = loewner_new(p, how->longest > 0 ? how->longest : MAX_POINTS);
+    loewner *const w = *work = loewner_new(p, how->longest ? abs(how->longest) : MAX_POINTS);
 
     if (w == NULL)
         return CV_ENOMEM;

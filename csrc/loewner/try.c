@@ -150,7 +150,7 @@ static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
         worst = widest;
     if (!s->contradicted)
         out->v.reason = s->why;
-    if (s->why == CV_REASON_TOO_LONG && points_of(w, k) == problem->longest && !s->contradicted)
+    if (out->cut_off && !s->contradicted)
         worst = -1; /* as halves' orbits stay near, they are hopeless, too */
     if (worst >= 0 && cut_helps(problem, cell, problem->axis[worst]))
         out->axis = problem->axis[worst];
@@ -217,8 +217,10 @@ static int try_prisms(void *work, const loewner *problem, int n, const cv_cell *
     follow_and_attempt(w, going, n, cells, s, out);
     if (w->out_of_memory)
         return CV_ENOMEM;
-    for (int k = 0; k < n; k++)
+    for (int k = 0; k < n; k++) {
+        out[k]->cut_off = s[k].why == CV_REASON_TOO_LONG && points_of(w, k) == problem->longest;
         put_truth(&blamed, k, holds(&going, k) && !out[k]->v.no_tori && s[k].contradicted);
+    }
     if (any(blamed))
         bound_shares(w, blamed);
     for (int k = 0; k < n; k++)

@@ -24,9 +24,10 @@ typedef struct {
     int hint;                           /* what its halves are to know: cv_cell */
     int quick_tries, tries, Rtries;     /* stages that were run, 0 or 1 each, for cv_counts */
     int steps, ll_used[3];              /* of the thesis's try in doubles */
+    int cut_off;                        /* has the orbit as many points as it may have? */
 } outcome;
 
-/* longest: the most points of an orbit, or 0 for as many as the method can follow. */
+/* longest: as cv_search_new has it. */
 typedef struct { int digits, as_printed, longest; } precision;
 
 typedef struct {

@@ -132,7 +132,7 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
     int status;
 
     *result = NULL;
-    if (dp < 1 || dp > MAX_DP || depth < 0 || depth > MAX_DEPTH || longest < 0 ||
+    if (dp < 1 || dp > MAX_DP || depth < 0 || depth > MAX_DEPTH ||
         (method != CV_THESIS && method != CV_LOEWNER))
         return CV_EARGUMENT;
     s = calloc(1, sizeof *s);

@@ -156,6 +156,10 @@ static int decide(cv_search *s)
 
     if (n == NULL)
         return CV_ENOMEM;
+    if (n->outcome.cut_off && s->precision.longest < 0) {
+        s->status = CV_LONG;
+        return CV_OK;
+    }
     s->last_steps = 0;
     if (n->skipped)
         leaf(s, 'S');

@@ -1,14 +1,15 @@
 """Angles in turns: sines against an independent truth, and how long orbits may be."""
 
+import time
 from fractions import Fraction
 
 import mpmath
 import pytest
 from test_waves import many_digits  # noqa: F401
 
-from converse import ConverseError, Problem, prove
+from converse import ConverseError, Problem, StandardMap, prove
 from converse.model.map import MuldoonMap
-from converse.prover import native, orbit_length
+from converse.prover import native, orbit_length, run
 from converse.prover.proof import Proof, Tree
 from converse.prover.run import ready
 from converse.prover.settings import Settings
@@ -89,6 +90,46 @@ def test_orbits_of_two_angles_are_not_long(b):
     problem = Problem(MuldoonMap("2", b, 0))
     assert orbit_length.longest(problem, None) == 0
     assert orbit_length.longest(Problem(MuldoonMap("2", b, "0.1")), None) == native.ORDINARY
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Orbits of more than 20 points count as long.  What is asked about them, in a list."""
+    calls = []
+
+    def longest(*arguments):
+        calls.append(arguments)
+        return orbit_length.longest(*arguments)
+
+    monkeypatch.setattr(native, "ORDINARY", 20)
+    monkeypatch.setattr(run, "longest", longest)
+    return calls
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_long_orbits_are_asked_about_when_a_prism_first_needs_one(jobs, asked, monkeypatch):
+    """The tree and its statistics do not depend on when that is."""
+    assert prove(StandardMap(k=2), jobs=jobs) and not asked
+    proof = prove(StandardMap(k=1), jobs=jobs)
+    assert len(asked) == 1 and proof.counts.max_NTsteps > native.ORDINARY
+    monkeypatch.undo()
+    assert proof == prove(StandardMap(k=1), jobs=1)
+
+
+def test_a_question_about_long_orbits_obeys_the_time_limit(asked, monkeypatch, tmp_path):
+    """What was grown before it stands."""
+    def longest(problem, xstar, stop):
+        while not stop.is_set():
+            time.sleep(0.01)
+        return orbit_length.longest(problem, xstar, stop)
+
+    path, told = tmp_path / "proof", []
+    with monkeypatch.context() as patched:
+        patched.setattr(run, "longest", longest)
+        left = prove(StandardMap(k=1), time_limit=1, backup=path,
+                     progress=lambda *now: told.append(now))
+    assert not left.all_decided and left.counts.proved and left.seconds < 60 and len(told) > 5
+    assert prove(resume=path) == prove(StandardMap(k=1)) and len(asked) == 2
 
 
 def test_the_longest_orbits():
