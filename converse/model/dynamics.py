@@ -1,7 +1,8 @@
 """Images of points under a map, orbits, Jacobians and phase portraits, in doubles."""
 
-from numbers import Integral
 from typing import TYPE_CHECKING, Any, Optional, Tuple
+
+from .exact import integer, is_integer
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,8 +19,12 @@ class Dynamics:
     period: float
     letters: str                        # the names of an angle and of a momentum
 
-    def _derivatives(self, y: "np.ndarray") -> "Tuple[np.ndarray, np.ndarray]":
-        """The gradient (m, n) and the Hessian (m, n, n) of V at points (m, n)."""
+    def _gradient(self, y: "np.ndarray") -> "np.ndarray":
+        """The gradient (m, n) of V at points (m, n)."""
+        raise NotImplementedError
+
+    def _hessian(self, y: "np.ndarray") -> "np.ndarray":
+        """The Hessian (m, n, n) of V at points (m, n)."""
         raise NotImplementedError
 
     def map(self, y: Any, J: Any, eps: float = 1.0) -> "Tuple[np.ndarray, np.ndarray]":
@@ -43,9 +48,8 @@ class Dynamics:
         ValueError
             An array has another shape, eps is not finite, or a parameter of the map has a range.
         """
-        y, J, gradient, _ = self._at(y, J, eps)
-        J = J - gradient
-        return y + J, J
+        ys, Js = self.orbit(y, J, 1, eps)
+        return ys[1], Js[1]
 
     def inverse(self, y: Any, J: Any, eps: float = 1.0) -> "Tuple[np.ndarray, np.ndarray]":
         """The points whose images these are.
@@ -60,11 +64,8 @@ class Dynamics:
         y, J
             Arrays of the shape of y and J.
         """
-        import numpy as np
-
-        y, J = np.broadcast_arrays(np.asarray(y, float), np.asarray(J, float))
-        before, J, gradient, _ = self._at(y - J, J, eps)
-        return before, J + gradient
+        ys, Js = self.orbit(y, J, -1, eps)
+        return ys[1], Js[1]
 
     def jacobian(self, y: Any, eps: float = 1.0) -> "np.ndarray":
         """The derivative of map() at y, which does not depend on J.
@@ -79,9 +80,9 @@ class Dynamics:
         array (..., 2n, 2n)
             Angles before momenta, that is, [[1 - eps V'', 1], [-eps V'', 1]].
         """
-        y, _, _, bend = self._at(y, 0.0, eps)
-        n = self.dimension
-        shape = y.shape[:-1] if y.shape[-1:] == (n,) else y.shape
+        n, y = self.dimension, self._points(y, 0.0, eps)[0]
+        shape = y.shape if n == 1 else y.shape[:-1]
+        bend = eps * self._hessian(y.reshape(-1, n))
         return jacobians(bend).reshape(*shape, 2 * n, 2 * n)
 
     def orbit(self, y: Any, J: Any, steps: int,
@@ -102,13 +103,20 @@ class Dynamics:
         """
         import numpy as np
 
-        steps = _steps(steps)
-        y, J = np.broadcast_arrays(np.asarray(y, float), np.asarray(J, float))
+        steps, (y, J) = _steps(steps), self._points(y, J, eps)
         ys, Js = (np.empty((abs(steps) + 1, *y.shape)) for _ in range(2))
         ys[0], Js[0] = y, J
-        step = self.map if steps > 0 else self.inverse
-        for j in range(abs(steps)):
-            ys[j + 1], Js[j + 1] = step(ys[j], Js[j], eps)
+        flat = [each.reshape(len(each), y.size // self.dimension, self.dimension)
+                for each in (ys, Js)]
+        y, J = (each[0] for each in flat)
+        for j in range(1, len(ys)):
+            if steps > 0:
+                J = J - eps * self._gradient(y)
+                y = y + J
+            else:
+                y = y - J
+                J = J + eps * self._gradient(y)
+            flat[0][j], flat[1][j] = y, J
         return ys, Js
 
     def portrait(self, y: Any = None, J: Any = None, steps: int = 500, *, eps: float = 1.0,
@@ -142,8 +150,8 @@ class Dynamics:
         from ..orbits.portrait import portrait
         return portrait(self, eps, y, J, _steps(steps), plane, ax, style)
 
-    def _at(self, y, J, eps):
-        """y and J of one shape, there eps times the gradient, and eps V'' as an array (m, n, n)."""
+    def _points(self, y, J, eps):
+        """y and J as arrays of one shape, (..., n) or, with one angle, any."""
         import numpy as np
 
         if not np.isfinite(eps):
@@ -152,8 +160,7 @@ class Dynamics:
         if self.dimension == 2 and y.shape[-1:] != (2,):
             raise ValueError("points of two angles are arrays of shape (..., 2), not %r"
                              % (y.shape,))
-        gradient, bend = self._derivatives(y.reshape(-1, self.dimension))
-        return y, J, eps * gradient.reshape(y.shape), eps * bend
+        return y, J
 
 
 def jacobians(bend: "np.ndarray") -> "np.ndarray":
@@ -170,6 +177,6 @@ def jacobians(bend: "np.ndarray") -> "np.ndarray":
 
 
 def _steps(steps):
-    if not isinstance(steps, Integral) or isinstance(steps, bool) or abs(steps) >= 2 ** 31:
+    if not is_integer(steps) or abs(steps) >= 2 ** 31:
         raise ValueError("steps: a whole number below 2^31 in size, not %.200r" % (steps,))
-    return int(steps)
+    return integer(steps)

@@ -2,23 +2,25 @@
 are irrational.
 
 Every exact number of the package is a Fraction.  exact() reads it from whatever a user may give.
-decimal_text() writes a finite decimal, and short_text() any other number.  rounded_text() writes a
-bound, and ball_text() two, rounded towards the weaker statement.
+number_text() and short_text() write it, and decimal_text() a finite decimal.  rounded_text() writes
+a bound, and ball_text() two, rounded towards the weaker statement.
 """
 
 import math
+import operator
 import re
 from decimal import Context, Decimal
 from fractions import Fraction
 from functools import lru_cache
-from typing import NamedTuple, Tuple, Union
+from typing import Any, NamedTuple, Tuple, Union
 
 MAX_EXPONENT = 300                      # A number is 0 or from 10^-300 to 10^300 in size.
-SHOWN = 20                              # An Interval is printed with 20 digits at most.
+EXPONENT_DIGITS = 9                     # Decimals of longer exponents are errors of decimal.
+SHOWN = 20                              # An Interval or a number of a line has 20 digits at most.
 FEWEST, MOST = 6, 10000                 # short_text() tries 6, 12, 24, ... digits.
 SHORT = 3                               # Numbers from 10^-SHORT to 10^SHORT need no exponent.
-DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,9})?")
-RATIO = re.compile(r"[+-]?[0-9]+/[0-9]*[1-9][0-9]*")
+DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?0*([0-9]+))?")
+RATIO = re.compile(r"([+-]?[0-9]+)/([0-9]*[1-9][0-9]*)")
 
 Number = Union[int, str, Decimal, Fraction]
 Ends = Tuple[Fraction, Fraction]        # the lower and the upper end of an interval
@@ -46,8 +48,12 @@ class Interval(NamedTuple):
         return float(self.mid)
 
     def __contains__(self, x: object) -> bool:
-        """Is a number, taken as what it is exactly, in the interval?"""
-        return isinstance(x, (int, float, Fraction, Decimal)) and self.lo <= Fraction(x) <= self.hi
+        """Is a number, taken as what it is exactly, in the interval?  Infinity and nan are not."""
+        try:
+            ratio = x.as_integer_ratio() if hasattr(x, "as_integer_ratio") else (integer(x), 1)
+        except (TypeError, ValueError, OverflowError):
+            return False
+        return self.lo <= Fraction(*map(int, ratio)) <= self.hi
 
     def __repr__(self) -> str:
         return ball_text(self.lo, self.hi, SHOWN)
@@ -62,27 +68,51 @@ def exact(x: Number) -> Fraction:
     was meant.  ValueError: a string is not a number, or the number is out of range."""
     if isinstance(x, (str, Decimal)):
         return _parsed(str(x))
-    if isinstance(x, bool) or not isinstance(x, (int, Fraction)):
-        raise TypeError("%.200r is not an exact number: give an int, a Fraction, a Decimal or a "
-                        "string such as '0.3085' or '63/64'" % (x,))
-    return _in_range(Fraction(x), x)
+    if not isinstance(x, Fraction):
+        try:
+            x = Fraction(integer(x))
+        except TypeError:
+            raise TypeError("%.200r is not an exact number: give an int, a Fraction, a Decimal or "
+                            "a string such as '0.3085' or '63/64'" % (x,)) from None
+    return _in_range(x, number_text(x))
+
+
+def integer(x: Any) -> int:
+    """The integer x, of whatever library, as an int.  TypeError: x is not one, or it is a bool."""
+    if isinstance(x, bool):
+        raise TypeError("%r is not an integer" % x)
+    return operator.index(x)
+
+
+def is_integer(x: Any) -> bool:
+    """Does integer() take x?"""
+    try:
+        integer(x)
+    except TypeError:
+        return False
+    return True
 
 
 def _parsed(text):
-    if RATIO.fullmatch(text):
-        return _in_range(Fraction(text), text)
-    if not DECIMAL.fullmatch(text):
+    if ratio := RATIO.fullmatch(text):      # Decimals have no limit of digits, as int() has
+        return _in_range(Fraction(*(int(Decimal(part)) for part in ratio.groups())), text)
+    number = DECIMAL.fullmatch(text)
+    if not number:
         raise ValueError("%r is not a decimal number" % text[:40])
-    value = Decimal(text)
-    if abs(value.adjusted()) > MAX_EXPONENT:
-        raise ValueError("'%.40s' is out of range" % text)
-    return Fraction(value)
+    if len(number[3] or "") > EXPONENT_DIGITS or abs(Decimal(text).adjusted()) > MAX_EXPONENT:
+        raise _out_of_range(text)
+    return Fraction(Decimal(text))
 
 
-def _in_range(value, given):
+def _in_range(value, text):
     if value and not Fraction(1, 10 ** MAX_EXPONENT) <= abs(value) <= 10 ** MAX_EXPONENT:
-        raise ValueError("'%.40s' is out of range" % given)
+        raise _out_of_range(text)
     return value
+
+
+def _out_of_range(text):
+    return ValueError("'%.40s' is out of range: a number is 0 or from 10^-%d to 10^%d in size" % (
+        text, MAX_EXPONENT, MAX_EXPONENT))
 
 
 # ---- writing
@@ -92,13 +122,20 @@ def is_decimal(x: Fraction) -> bool:
     return _odd_part(x.denominator)[0] == 1
 
 
+def number_text(x: Fraction) -> str:
+    """The number, exactly: a decimal if it is a finite one, else a ratio."""
+    if is_decimal(x):
+        return decimal_text(x, 0)
+    return "%s/%s" % (Decimal(x.numerator), Decimal(x.denominator))     # str(int) has a limit
+
+
 def decimal_text(x: Union[int, Decimal, Fraction], places: int = -1) -> str:
     """The rational number x, which must be a finite decimal, exactly; with places >= 0 without an
     exponent and with at least `places` digits after the point."""
     x = Fraction(x)
     rest, needed = _odd_part(x.denominator)
     if rest != 1:
-        raise ValueError("%s is not a finite decimal" % x)
+        raise ValueError("%s is not a finite decimal" % number_text(x))
     digits = Decimal(x.numerator * (10 ** needed // x.denominator)).as_tuple()
     value = Decimal((digits.sign, digits.digits, -needed))
     return str(value) if places < 0 else "{:.{}f}".format(value, max(places, needed))
@@ -118,7 +155,7 @@ def _odd_part(n):
 def short_text(x: Fraction, error: Fraction = Fraction(0)) -> str:
     """A decimal no more than the error away from x; a ratio if that takes too many digits."""
     x = Fraction(x)
-    digits = FEWEST
+    digits = FEWEST if error or is_decimal(x) else MOST + 1
     while digits <= MOST:
         context = Context(prec=digits)
         value = context.divide(Decimal(x.numerator), Decimal(x.denominator))
@@ -126,12 +163,18 @@ def short_text(x: Fraction, error: Fraction = Fraction(0)) -> str:
             value = value.normalize(context)
             return format(value, "f") if -7 < value.adjusted() < 16 else str(value).lower()
         digits *= 2
-    return str(x)
+    return number_text(x)
 
 
 def range_text(low: Fraction, high: Fraction) -> str:
-    """A range, to ten digits, for a short line."""
-    return "%.10g" % low if low == high else "%.10g..%.10g" % (low, high)
+    """A range or a number, for a short line: a range to ten digits or more, and without what is
+    not in it."""
+    if low == high:
+        text = short_text(low)
+        return text if len(text) <= SHOWN else "about %.10g" % low
+    places = max(9 - _order(max(-low, high)), 2 - _order(high - low))
+    return "..".join(short_text(x) for x in (rounded(low, places, up=True),
+                                             rounded(high, places, up=False)))
 
 
 # ---- rounding in a direction

@@ -4,20 +4,16 @@ B), or JSON with the harmonics of a Fourier sum (docs/reference/inputs.md)."""
 import json
 import os
 import re
-from fractions import Fraction
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from typing import IO, NoReturn, Union
 
 from .exact import exact
-from .map import affine
+from .map import MOST_CHARACTERS, affine
 from .problem import InputError, Problem
 
 LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documentation calls them
-PHASES = {"sin": Fraction(0), "cos": Fraction(1, 2)}    # sin(k.y + pi / 2) = cos k.y
 INTEGER = re.compile("-?[0-9]{1,9}")
-# Of a number: one of 100,000 characters takes a proof 18 seconds before it begins, one of 10,000
-# takes half a second (November 2026).
-MOST_CHARACTERS = 10000
-MOST_BYTES = 1 << 24                    # of a file
+MOST_BYTES = 1 << 18                    # of a file, with its comments
 
 Source = Union[str, "os.PathLike[str]", IO]
 
@@ -64,8 +60,11 @@ def _read(source):
         raise InputError("%s: cannot be read (%s); name a readable file"
                          % (name, error.strerror or error)) from None
     if len(data) > MOST_BYTES:
-        raise InputError("%s: is longer than %d bytes; name an input file" % (name, MOST_BYTES))
+        raise InputError("%s: is longer than %d bytes; name an input file, with shorter comments"
+                         % (name, MOST_BYTES))
     if isinstance(data, bytes):
+        if data[:2] in (BOM_UTF16_LE, BOM_UTF16_BE) or b"\0" in data[:2]:
+            raise InputError("%s: is not text in UTF-8, perhaps in UTF-16; save it in UTF-8" % name)
         try:
             data = data.decode("utf-8-sig")
         except UnicodeDecodeError:
@@ -197,7 +196,7 @@ def _problem(value, name):
     waves = []
     for j, harmonic in enumerate(value["harmonics"], 1):
         _check_fields("harmonic %d" % j, harmonic, ["k", "amplitude"], ["phase"])
-        where, k, phase = "harmonic %d, k" % j, harmonic["k"], harmonic.get("phase", "sin")
+        where, k = "harmonic %d, k" % j, harmonic["k"]
         if not isinstance(k, list) or not all(
                 isinstance(n, _Number) and INTEGER.fullmatch(n) for n in k):
             _fail(where, "this is not a list of integers", "give [k] or [k0, k1]")
@@ -206,8 +205,7 @@ def _problem(value, name):
         if len(k) != len(value["harmonics"][0]["k"]):
             _fail(where, "the number of angles is not that of harmonic 1", "give [k] or [k0, k1] "
                   "in all harmonics")
-        waves.append((*map(int, k), *(0,) * (2 - len(k)),
-                      PHASES.get(phase, phase) if isinstance(phase, str) else phase))
+        waves.append((*map(int, k), *(0,) * (2 - len(k)), harmonic.get("phase", "-sin")))
     if "v1" in value and len(k) == 1:
         _fail("v1", "a map of the circle has no second angle", "leave it out")
     made = affine(waves, [harmonic["amplitude"] for harmonic in value["harmonics"]],

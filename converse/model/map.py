@@ -7,14 +7,16 @@
 
 import math
 import re
+import warnings
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Dict, Mapping, Sequence, Tuple, Union
 
 from .dynamics import Dynamics
-from .exact import Ends, Number, exact, is_decimal, outward, range_text, short_text
-from .potential import FourierSum, Wave
+from .exact import (Ends, Number, decimal_text, exact, integer, is_decimal, is_integer, number_text,
+                    outward, pi_bounds, range_text, short_text)
+from .potential import PHASES, FourierSum, Wave, potential_text
 
 THESIS = (1, 0), (0, 1), (1, 1)         # the harmonics of a, b and c
 # The line of Muldoon's thesis is a = b = c/2 = LINE epsilon: this decimal defines epsilon here.
@@ -22,6 +24,7 @@ THESIS = (1, 0), (0, 1), (1, 1)         # the harmonics of a, b and c
 # which converse.orbits has.
 LINE = Fraction("11.21436")
 PLACES = 40                             # to which an end that is not a finite decimal is enclosed
+MOST_CHARACTERS = 1000                  # of a number; converse-check takes no longer ones
 MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of k and of a frame
 NAME = re.compile(r"[^\W\d]\w{0,30}(\[[0-9]{1,9}\])?")      # of a parameter
 RESERVED = "J", "J0", "J1", "P", "S", "V", "cos", "pi", "sin", "y", "y0", "y1"     # of theorems
@@ -45,8 +48,10 @@ class SymplecticMap(Dynamics):
     Parameters
     ----------
     harmonics
-        (k0, k1) or (k0, k1, phase) of each harmonic: k integers up to 100, the phase in units of
-        pi.  If all k1 are 0, the map has one angle.
+        (k0, k1) or (k0, k1, phase) of each harmonic: k integers up to 100.  The phase is a number
+        in units of pi, but no int, which would look like a third k; or "+cos", "-cos", "+sin" or
+        "-sin": then the term of V is p times this function of k.y.  Without a phase it is "-sin".
+        If all k1 are 0, the map has one angle.
     amplitude
         Of each harmonic where all parameters are 0, an exact number.
     slopes
@@ -59,8 +64,8 @@ class SymplecticMap(Dynamics):
         Of the map, for reports.
 
     Numbers are exact: ints, Fractions, Decimals, and strings such as "0.3085", "1.25e-3" and
-    "63/64".  Two values are equal if they are the same family of maps, whatever their parameters
-    are called.
+    "63/64".  Two values are equal if they have the same harmonics, and the same amplitudes for the
+    same ranges of parameters, in any order, whatever the parameters are called.
 
     Raises
     ------
@@ -85,13 +90,15 @@ class SymplecticMap(Dynamics):
 
     def __post_init__(self) -> None:
         harmonics, amplitude, slopes = _checked(self.harmonics, self.amplitude, self.slopes)
-        ranges = [ends_of("the range of parameter %d" % m, ends)
-                  for m, ends in enumerate(self.ranges or [(-1, 1)] * len(slopes), 1)]
         names = tuple(self.names)
         for name in names:
             if not isinstance(name, str) or not NAME.fullmatch(name) or name in RESERVED:
                 raise ValueError("a parameter's name is a letter and then letters and digits, and "
                                  "none of %s, not %.40r" % (", ".join(RESERVED), name))
+        given = list(self.ranges) or [(-1, 1)] * len(slopes)
+        ranges = [ends_of("the range of %s" % name, ends) for name, ends in zip(
+            names if len(names) == len(given) else
+            ["parameter %d" % m for m in range(1, 1 + len(given))], given)]
         if harmonics == tuple((*k, Fraction(0)) for k in THESIS) and not slopes:
             slopes = tuple(tuple(Fraction(m == j) for j in range(3)) for m in range(3))
             amplitude, ranges, names = (Fraction(0),) * 3, [(p, p) for p in amplitude], tuple("abc")
@@ -116,7 +123,8 @@ class SymplecticMap(Dynamics):
 
     def _key(self):
         middle, parts = self.patch
-        return self.harmonics, middle, tuple(filter(any, parts))
+        waves, *parts = zip(*sorted(zip(zip(self.harmonics, middle), *filter(any, parts))))
+        return waves, tuple(sorted(max(part, tuple(-x for x in part)) for part in parts))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, SymplecticMap) and self._key() == other._key()
@@ -125,13 +133,26 @@ class SymplecticMap(Dynamics):
         return hash(self._key())
 
     def __str__(self) -> str:
-        text = self.name or "%d harmonic%s" % (len(self.harmonics), "s" * (len(self.harmonics) > 1))
-        names = self.names or ["t[%d]" % m for m in range(1, 1 + len(self.slopes))]
-        return ", ".join([text] + ["%s = %s" % (name, range_text(*ends))
-                                   for name, ends in zip(names, self.ranges)])
+        return self._in_words(self.name or self.formula)
 
     def __repr__(self) -> str:
-        return "<SymplecticMap: %s>" % self
+        return "<SymplecticMap: %s>" % self._in_words(
+            "%s, %s" % (self.name, self.formula) if self.name else self.formula)
+
+    def _in_words(self, text):
+        return ", ".join([text] + ["%s = %s" % (name, range_text(*ends))
+                                   for name, ends in zip(self._letters, self.ranges)])
+
+    @property
+    def _letters(self):
+        return self.names or ["t[%d]" % m for m in range(1, 1 + len(self.slopes))]
+
+    @property
+    def formula(self) -> str:
+        """V in words, exactly, by the names of the parameters."""
+        forms = ({"": p, **dict(zip(self._letters, slopes))}
+                 for p, *slopes in zip(self.amplitude, *self.slopes))
+        return "V(y) = " + potential_text(self.harmonics, forms, self.dimension)
 
     @property
     def dimension(self) -> int:     # type: ignore[override]
@@ -147,7 +168,8 @@ class SymplecticMap(Dynamics):
     @cached_property
     def enclosed(self) -> Tuple[Numbers, Tuple[Numbers, ...]]:
         """As `patch`, in finite decimals, of ranges whose ends are moved outwards to 40 places
-        where they are not finite decimals.  ValueError: an amplitude is not a finite decimal."""
+        where they are not finite decimals.  ValueError: an amplitude is not a finite decimal, or
+        one that is too long for a proof file."""
         middle, parts = _patch(self.amplitude, self.slopes,
                                [outward(*ends, PLACES) for ends in self.ranges])
         for name, numbers in [("the amplitude", middle)] + [
@@ -155,7 +177,10 @@ class SymplecticMap(Dynamics):
             for j, number in enumerate(numbers, 1):
                 if not is_decimal(number):
                     raise ValueError("%s of harmonic %d: %s is not a finite decimal"
-                                     % (name, j, number))
+                                     % (name, j, number_text(number)))
+                if len(decimal_text(number)) > MOST_CHARACTERS:
+                    raise ValueError("%s of harmonic %d has more than %d characters; give shorter "
+                                     "numbers" % (name, j, MOST_CHARACTERS))
         return middle, parts
 
     # ---- other maps
@@ -218,14 +243,26 @@ class SymplecticMap(Dynamics):
 
     # ---- in doubles
 
-    def _derivatives(self, y):
+    @cached_property
+    def _doubles(self):
+        """k (waves, n), the phases in radians, and the amplitudes, as arrays."""
         import numpy as np
 
-        n = self.dimension
-        k = np.array([wave[:n] for wave in self.harmonics], float)
-        angle = y @ k.T + np.pi * np.array([float(phase) for *_, phase in self.harmonics])
-        p = np.array([float(p) for p in self.potential().amplitude])
-        return -(p * np.cos(angle)) @ k, np.einsum("mj,ja,jb->mab", p * np.sin(angle), k, k)
+        return (np.array([wave[:self.dimension] for wave in self.harmonics], float),
+                np.pi * np.array([float(phase) for *_, phase in self.harmonics]),
+                np.array([float(p) for p in self.potential().amplitude]))
+
+    def _gradient(self, y):
+        import numpy as np
+
+        k, phase, p = self._doubles
+        return -(p * np.cos(y @ k.T + phase)) @ k
+
+    def _hessian(self, y):
+        import numpy as np
+
+        k, phase, p = self._doubles
+        return np.einsum("mj,ja,jb->mab", p * np.sin(y @ k.T + phase), k, k)
 
 
 # ---- the maps of the literature
@@ -243,7 +280,7 @@ def StandardMap(k: Union[Range, Number]) -> SymplecticMap:
     TypeError, ValueError
         k is not as described.
     """
-    return SymplecticMap([(1, 0, "-1/2")], [0], [[1]], [k], ["k"], "standard map")
+    return SymplecticMap([(1, 0, "+cos")], [0], [[1]], [k], ["k"], "standard map")
 
 
 def FroeschleMap(k: Union[Range, Number], b: Union[Range, Number]) -> SymplecticMap:
@@ -259,7 +296,7 @@ def FroeschleMap(k: Union[Range, Number], b: Union[Range, Number]) -> Symplectic
     TypeError, ValueError
         An argument is not as described; the text names the parameter.
     """
-    return SymplecticMap([(1, 0, "-1/2"), (0, 1, "-1/2"), (1, 1, "-1/2")], [0] * 3,
+    return SymplecticMap([(1, 0, "+cos"), (0, 1, "+cos"), (1, 1, "+cos")], [0] * 3,
                          [[1, 1, 0], [0, 0, 1]], [k, b], ["k", "b"], "Froeschlé map")
 
 
@@ -299,14 +336,25 @@ def FourierMap(harmonics: Mapping[Any, Amplitude], *, name: str = "",
                **parameters: Union[Range, Number]) -> SymplecticMap:
     """A map of any potential that is a finite Fourier sum, V(y) = - sum of p sin(k.y + pi phase).
 
-        FourierMap({(1, 0): {"K": 1}, (0, 1): {"K": 1}, (1, 1, "1/2"): "0.3"}, K=("0.6", "0.602"))
+        FourierMap({(1, "+cos"): {"K": 1}, (3, "+cos"): "0.05"}, K=("0.6", "0.602"))
+        FourierMap({(1, 0): "0.3", (0, 1): "0.3", ((1, 1), "1/3"): "0.6"})
 
     Parameters
     ----------
     harmonics
-        {k: p}.  A key is (k0, k1) or (k0, k1, phase), the phase in units of pi; with one angle an
-        integer k is taken.  An amplitude p is a number, a range (low, high), or {name: factor} of
-        parameters, with the name "constant" for what no parameter moves.
+        {k: p} or {(k, phase): p}.  k is an integer for one angle, a pair (k0, k1) for two; the
+        phase is as of SymplecticMap.  An amplitude p is a number, a range (low, high), or {name:
+        factor} of parameters, with the name "constant" for what no parameter moves.
+
+        ========  ==============  ==================
+        phase     term of V       term of J' (one k)
+        ========  ==============  ==================
+        "+cos"    p cos(k y)      + p k sin(k y)
+        "-cos"    - p cos(k y)    - p k sin(k y)
+        "+sin"    p sin(k y)      - p k cos(k y)
+        "-sin"    - p sin(k y)    + p k cos(k y)
+        ========  ==============  ==================
+
     name
         Of the map, for reports.
     parameters
@@ -317,8 +365,17 @@ def FourierMap(harmonics: Mapping[Any, Amplitude], *, name: str = "",
     TypeError, ValueError
         An argument is not as described, or no amplitude depends on a parameter.
     """
-    waves = [(k, 0) if isinstance(k, int) else k for k in harmonics]
-    return affine(waves, list(harmonics.values()), parameters, name)
+    return affine(list(map(_wave, harmonics)), list(harmonics.values()), parameters, name)
+
+
+def _wave(key):
+    """The harmonic of a key of FourierMap: k, (k0, k1), or (k, phase) with either k."""
+    if is_integer(key):
+        return key, 0
+    if isinstance(key, tuple) and len(key) == 2 and not is_integer(key[1]):
+        k, phase = key
+        return (*(k if isinstance(k, tuple) else (k, 0)), phase)
+    return key
 
 
 def affine(waves: Sequence[tuple], amplitudes: Sequence[Amplitude],
@@ -399,7 +456,8 @@ def ends_of(name: str, value: Any) -> Ends:
                          % (name, len(ends)))
     low, high = (exact_of(name, end) for end in ends)
     if low > high:
-        raise ValueError("%s: the lower end, %s, is above the upper one, %s" % (name, *ends))
+        raise ValueError("%s: the lower end, %s, is above the upper one, %s"
+                         % (name, number_text(low), number_text(high)))
     return low, high
 
 
@@ -409,6 +467,28 @@ def exact_of(name: str, number: Any) -> Fraction:
         return exact(number)
     except (TypeError, ValueError) as error:
         raise type(error)("%s: %s" % (name, error)) from None
+
+
+def _phase(name, given="-sin"):
+    """A phase in units of pi, from -1 to 1.  A warning: it looks like one in radians."""
+    if is_integer(given):
+        raise TypeError("%s, %.40r, looks like a third k; maps have one angle or two, and a phase "
+                        "that is an integer is given as a string" % (name, given))
+    if not isinstance(given, str):
+        return 1 - (1 - exact_of(name, given)) % 2
+    if "+" + given in PHASES:
+        raise ValueError("%s: %r has no sign; for V with the term p %s(k.y) give '+%s', and for "
+                         "-p %s(k.y) '-%s', as which releases before 5.3 took it"
+                         % (name, given, *(given,) * 4))
+    phase = PHASES[given] if given in PHASES else exact_of(name, given)
+    places = len(given.partition(".")[2])       # of 1.5707963
+    step = Fraction(1, 2 if places < 4 else 12)
+    turns = round(phase / pi_bounds(places)[0] / step) * step
+    if places > 1 and turns and abs(phase - turns * pi_bounds(places)[0]) < Fraction(
+            1, 10 ** places):
+        warnings.warn("%s, %s, is taken in units of pi; give %s if it is %s pi in radians"
+                      % (name, given, turns, turns), RuntimeWarning, stacklevel=2)
+    return 1 - (1 - phase) % 2
 
 
 def _checked(harmonics, amplitude, slopes):
@@ -428,14 +508,14 @@ def _checked(harmonics, amplitude, slopes):
         if len(wave) not in (2, 3):
             raise ValueError("harmonic %d: give (k0, k1) or (k0, k1, phase), not %d numbers"
                              % (j + 1, len(wave)))
-        if not all(type(k) is int for k in wave[:2]):
-            raise TypeError("harmonic %d: k is two integers, not %r" % (j + 1, wave[:2]))
-        if wave[:2] == (0, 0) or max(map(abs, wave[:2])) > HIGHEST:
-            raise ValueError("harmonic %d: k = (%.20s, %.20s) is %s" % (
-                j + 1, *wave[:2], "not a harmonic" if wave[:2] == (0, 0) else
+        if not all(map(is_integer, wave[:2])):
+            raise TypeError("harmonic %d: k is two integers, not %.40r" % (j + 1, wave[:2]))
+        k = k0, k1 = tuple(map(integer, wave[:2]))
+        if k == (0, 0) or max(map(abs, k)) > HIGHEST:
+            raise ValueError("harmonic %d: k = (%s, %s) is %s" % (
+                j + 1, *map(short_text, k), "not a harmonic" if k == (0, 0) else
                 "out of range (%d at most)" % HIGHEST))
-        phase = exact_of("the phase of harmonic %d" % (j + 1), wave[2] if len(wave) == 3 else 0)
-        harmonics[j] = (*wave[:2], 1 - (1 - phase) % 2)
+        harmonics[j] = *k, _phase("the phase of harmonic %d" % (j + 1), *wave[2:])
         if harmonics[j] in seen:
             raise ValueError("harmonics %d and %d are the same; add up their amplitudes"
                              % (seen[harmonics[j]], j + 1))

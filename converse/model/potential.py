@@ -20,11 +20,14 @@ import math
 from fractions import Fraction
 from typing import Dict, Iterator, NamedTuple, Tuple
 
-from .exact import Ends, pi_bounds, sine_bounds
+from .exact import Ends, number_text, pi_bounds, sine_bounds
 
 Wave = Tuple[int, int, Fraction]        # k0, k1 and the phase in units of pi
 Term = Tuple[Tuple[int, int], Ends, Ends]
 QUARTER = Fraction(1, 2)                # A quarter turn in units of pi: sin(t + pi/2) = cos t.
+# The phases, in units of pi, with which a term - p sin(t + pi phase) of V is p times such a word.
+PHASES = {"-sin": Fraction(0), "-cos": QUARTER, "+sin": Fraction(1), "+cos": -QUARTER}
+QUARTERS = ("sin", 1), ("cos", 1), ("sin", -1), ("cos", -1)     # sin(y + n pi/2): function, sign
 
 
 class FourierSum(NamedTuple):
@@ -76,6 +79,34 @@ class FourierSum(NamedTuple):
         return sum_text(parts)
 
 
+def potential_text(waves, forms, dimension: int) -> str:
+    """V(y), exactly.  forms: each amplitude as a linear form of parameters, {name: factor}; the
+    name "" is the constant's."""
+    text = harmonics_text(waves, forms, [-1] * len(waves), 0, dimension)
+    return "-" * text.startswith(" -") + text[3:] or "0"
+
+
+def harmonics_text(waves, forms, factors, quarters: int, dimension: int) -> str:
+    """The sum of factor p sin(k.y + phi + quarters pi/2), exactly, each term with its sign: it is
+    written with k.y alone where phi is a multiple of pi/2."""
+    letters, text = ("y",) if dimension == 1 else ("y0", "y1"), ""
+    for (*k, phase), form, factor in zip(waves, forms, factors):
+        angle, (function, sign) = sum_text(zip(k, letters)), QUARTERS[quarters]
+        if (2 * phase).denominator == 1:
+            function, sign = QUARTERS[int(2 * phase + quarters) % 4]
+        else:
+            angle += " %s %s pi" % ("-" if phase < 0 else "+", number_text(abs(phase)))
+        terms = [(x, name) for name, x in form.items() if x]
+        if len(terms) > 1:
+            terms = [(1, "(%s)" % sum_text(terms))]
+        for x, name in terms if factor else ():
+            x *= factor * sign
+            text += (" - " if x < 0 else " + ") + " ".join(filter(None, (
+                "" if abs(x) == 1 else number_text(abs(x)), name, function)))
+            text += " " + angle if angle in letters else "(%s)" % angle
+    return text
+
+
 def from_terms(terms) -> FourierSum:
     """The FourierSum of {k: (c, d)}, k a tuple of one or two integers."""
     waves, amplitude = [], []
@@ -99,7 +130,7 @@ def product(x: Ends, y: Ends) -> Ends:
     return min(products), max(products)
 
 
-def sum_text(parts, number_text=str) -> str:
+def sum_text(parts) -> str:
     """The sum of products of a rational number and what follows it, in words."""
     text = ""
     for c, what in parts:

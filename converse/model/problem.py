@@ -6,7 +6,9 @@ from functools import cached_property
 from math import gcd
 from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
 
-from .exact import Ends, Number, decimal_text, exact, is_decimal, outward, range_text
+from ..storage.files import ConverseError
+from .exact import (Ends, Number, decimal_text, exact, integer, is_decimal, is_integer, outward,
+                    range_text)
 from .lattice import echelon
 from .map import (HIGHEST, PLACES, THESIS, MuldoonMap, Numbers, Range, SymplecticMap, ends_of,
                   exact_of)
@@ -19,7 +21,7 @@ Frame = Tuple[int, int, int, int]
 Shifts = Tuple[Tuple[Fraction, Fraction], ...]         # of v0 and v1, by each parameter
 
 
-class InputError(ValueError):
+class InputError(ConverseError, ValueError):
     """The input is not a problem; the text names the file, the line and the remedy."""
 
 
@@ -176,11 +178,11 @@ class Problem:
         """Checks the axes and alone."""
         if self.axes is not None:
             axes = tuple(self.axes)
-            if len(axes) != 4 or not all(type(f) is int and abs(f) <= HIGHEST for f in axes) or \
+            if len(axes) != 4 or not all(is_integer(f) and abs(f) <= HIGHEST for f in axes) or \
                     axes[0] * axes[3] == axes[1] * axes[2]:
                 raise ValueError("the axes are four integers up to %d whose determinant is not 0, "
                                  "not %r" % (HIGHEST, self.axes))
-            object.__setattr__(self, "axes", axes)
+            object.__setattr__(self, "axes", tuple(map(integer, axes)))
         if self.alone is not None:
             if self.alone not in (0, 1, "no") or isinstance(self.alone, bool):
                 raise ValueError("alone is 0, 1 or 'no', not %r" % (self.alone,))
@@ -197,7 +199,8 @@ class Problem:
         object.__setattr__(self, "shifts", shifts)
 
     def _key(self):
-        return (self.map, self.v0, self.v1, self.comments, self.frame, self.factor, self.shifts)
+        return (self.map, self.v0, self.v1, self.comments, self.frame, self.factor,
+                self.shifts and (self.shifts, self.map.patch))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Problem) and self._key() == other._key()

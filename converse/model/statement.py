@@ -4,12 +4,11 @@ its parameters, and how lines are broken."""
 import textwrap
 from fractions import Fraction
 
-from .exact import decimal_text, is_decimal
+from . import potential
+from .exact import is_decimal, number_text
 from .map import LINE
-from .potential import sum_text
 
 WIDTH, INDENT = 98, 11                  # characters of a line, and of the labels at its left
-QUARTERS = ("sin", 1), ("cos", 1), ("sin", -1), ("cos", -1)     # sin(y + n pi/2): function, sign
 LONGEST = 12                            # A value of epsilon with more digits is not printed.
 TORUS = {1: "rotational invariant circle", 2: "invariant torus"}        # by dimension
 
@@ -46,8 +45,9 @@ def _force(problem):
     """The same map without V: J' = J + K sin y, or a line for each component."""
     lines = []
     for i, letter in enumerate(["J"] if problem.map.dimension == 1 else ["J0", "J1"]):
-        lines += ["%s' = %s%s," % (letter, letter, _harmonics(
-            problem, [wave[i] for wave in problem.waves], 1))]
+        lines += ["%s' = %s%s," % (letter, letter, potential.harmonics_text(
+            problem.waves, _forms(problem), [wave[i] for wave in problem.waves], 1,
+            problem.map.dimension))]
     return ["that is,  " + lines[0], *lines[1:]]
 
 
@@ -62,29 +62,7 @@ def ended(lines):
 
 def potential_text(problem):
     """V in the problem's parameters, exactly."""
-    text = _harmonics(problem, [-1] * len(problem.waves), 0)
-    return "-" * text.startswith(" -") + text[3:] or "0"
-
-
-def _harmonics(problem, factors, quarters):
-    """The sum of factor p sin(k.y + phi + quarters pi/2), exactly, each term with its sign: it is
-    written with k.y alone where phi is a multiple of pi/2."""
-    letters, text = ("y", "") if problem.map.dimension == 1 else ("y0", "y1"), ""
-    for (k0, k1, phase), form, factor in zip(problem.waves, _forms(problem), factors):
-        angle, (function, sign) = sum_text(zip((k0, k1), letters)), QUARTERS[quarters]
-        if (2 * phase).denominator == 1:
-            function, sign = QUARTERS[int(2 * phase + quarters) % 4]
-        elif phase:
-            angle += " %s %s pi" % ("-" if phase < 0 else "+", abs(phase))
-        terms = [(x, name) for name, x in form.items() if x]
-        if len(terms) > 1:
-            terms = [(1, "(%s)" % sum_text(terms, number_text))]
-        for x, name in terms if factor else ():
-            x *= factor * sign
-            text += (" - " if x < 0 else " + ") + " ".join(filter(None, (
-                "" if abs(x) == 1 else number_text(abs(x)), name, function)))
-            text += " " + angle if angle in letters else "(%s)" % angle
-    return text
+    return potential.potential_text(problem.waves, _forms(problem), problem.map.dimension)
 
 
 def _forms(problem):
@@ -170,8 +148,3 @@ def one_angle(problem):
     """The only angle that the waves depend on; None: they depend on both or on none."""
     return {((True, False),): 0, ((False, True),): 1}.get(
         tuple({(bool(k0), bool(k1)) for (k0, k1), _ in problem.present}))
-
-
-def number_text(x):
-    """An exact number: a decimal if it is a finite one, else a ratio."""
-    return decimal_text(x, 0) if is_decimal(x) else str(x)

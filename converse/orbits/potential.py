@@ -178,9 +178,11 @@ class Potential(Dynamics):
         hessian[:, 0, 1] = hessian[:, 1, 0] = bend[:, 1]
         return value, gradient[:, :self.n], hessian[:, :self.n, :self.n]
 
-    def _derivatives(self, y):
-        _, gradient, hessian = self.evaluate(y / self.period)
-        return self.period * gradient, hessian
+    def _gradient(self, y):
+        return self.period * self.evaluate(y / self.period)[1]
+
+    def _hessian(self, y):
+        return self.evaluate(y / self.period)[2]
 
 
 @dataclass(frozen=True, repr=False)

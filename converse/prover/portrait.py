@@ -15,7 +15,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
-from ..model.exact import decimal_text, exact, pi_bounds, rounded, rounded_text
+from ..model.exact import decimal_text, exact, integer, is_integer, pi_bounds, rounded, rounded_text
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..model.region import MARGIN, PLACES, reversal_centre
@@ -111,8 +111,9 @@ class Portrait(Kept):
         """
         problem = _of_circle(Problem.of(source))
         for name, value, most in (("columns", columns, MOST_COLUMNS), ("depth", depth, 1000)):
-            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+            if not is_integer(value) or not 1 <= value <= most:
                 raise ValueError("%s is a whole number from 1 to %d, not %r" % (name, most, value))
+        columns, depth = integer(columns), integer(depth)
         even = _even(problem)
         count = -(-columns // 2) if even is not None else columns
         if not strips:

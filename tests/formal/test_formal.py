@@ -205,7 +205,7 @@ def refused(file, folder):
     return done.stderr
 
 
-def torus_file(path, k, margin=100, rotation="golden", phase=0):
+def torus_file(path, k, margin=100, rotation="golden", phase="0"):
     """A certificate of existence for the standard map, in the place of one that is there."""
     path.unlink(missing_ok=True)
     problem = Problem(SymplecticMap([(1, 0, phase)], [k]))

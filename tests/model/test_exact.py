@@ -1,16 +1,19 @@
 """Exact numbers: what is read is what was written, and what is rounded is rounded outwards."""
 
+import math
 import re
 from decimal import Decimal
 from fractions import Fraction
 
 import mpmath
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from converse.model.exact import (ball_text, decimal_text, exact, outward, pi_bounds, root_bounds,
-                                  rounded, rounded_text, short_text, sine_bounds)
+from converse.model.exact import (Interval, ball_text, decimal_text, exact, integer, number_text,
+                                  outward, pi_bounds, root_bounds, rounded, rounded_text,
+                                  short_text, sine_bounds)
 
 LONG = "0." + "0123456789" * 12
 positive = st.fractions(min_value=Fraction(1, 10 ** 40), max_value=10 ** 40)
@@ -33,6 +36,8 @@ def test_numbers_are_read(x, value):
     ("\x1b[1m", ValueError, r"'\\x1b\[1m' is not"), ("nan", ValueError, "not a decimal"),
     (Decimal("inf"), ValueError, "not a decimal"), ("\u0661", ValueError, "not a decimal"),
     ("1e301", ValueError, "out of range"), ("1e-999999999", ValueError, "out of range"),
+    ("1e1000000000", ValueError, "out of range: a number is 0 or from"),
+    ("0e" + "9" * 20, ValueError, "out of range"),
     (10 ** 301, ValueError, "out of range"), ("1/1" + "0" * 301, ValueError, "out of range")])
 def test_what_is_no_number(x, error, words):
     with pytest.raises(error, match=words):
@@ -53,6 +58,10 @@ def test_decimal_text():
     assert decimal_text(Fraction(617, 1000), 6) == "0.617000" and decimal_text(-3, 1) == "-3.0"
     long = Fraction(3, 5 ** 20000)          # longer than Python's limit on int <-> str
     assert Fraction(Decimal(decimal_text(long))) == long
+    assert exact(decimal_text(1 + long)) == 1 + long
+    ratio = Fraction(3 ** 10000, 7 ** 6000)
+    for text in number_text, short_text:
+        assert exact(text(ratio)) == ratio and text(Fraction(1, 3)) == "1/3"
     with pytest.raises(ValueError, match="1/3 is not a finite decimal"):
         decimal_text(Fraction(1, 3))
 
@@ -73,6 +82,25 @@ def test_rounded(x, places):
     down, up = rounded(x, places, up=False), rounded(x, places, up=True)
     assert down <= x <= up and up - down in (0, Fraction(1, 10 ** places))
     assert (up == down) == ((x * 10 ** places).denominator == 1)
+
+
+def test_integers_of_any_library():
+    with pytest.raises(ValueError, match="'10000.*' is out of range: a number is 0 or from"):
+        exact(10 ** 5000)
+    assert [type(exact(x)) for x in (np.int64(3), np.uint8(3))] == [Fraction] * 2
+    assert type(integer(np.int64(3))) is int and integer(3) == 3
+    for x in True, 3.0, np.float64(3), "3", Fraction(3):
+        with pytest.raises(TypeError):
+            integer(x)
+
+
+@pytest.mark.parametrize("x, inside", [
+    (np.int64(1), True), (np.float64(0.5), True), (np.float32(0.5), True), (Decimal(1), True),
+    (math.inf, False), (-math.inf, False), (math.nan, False), (Decimal("inf"), False),
+    (Decimal("nan"), False), (np.float64("inf"), False), (2, False), ("1", False),
+    (None, False), (Fraction(1, 3), True), (1.0000000000000002, False)])
+def test_what_is_in_an_interval(x, inside):
+    assert (x in Interval(Fraction(0), Fraction(1))) is inside
 
 
 def test_outward():

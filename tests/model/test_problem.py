@@ -92,7 +92,7 @@ def changed(number, line):
     (changed(3, "1 1e-400"), 3, "out of range"), (changed(3, "1 1e9999999999999"), 3, "1e99"),
     (changed(3, "1 1e999999999"), 3, "out of range"), (changed(3, "0e999999999 0"), 3, "range"),
     (changed(3, "1" + "0" * 400 + " 0"), 3, "out of range"),
-    (changed(2, "0." + "3" * 10000 + " 0"), 2, "10002 characters; give at most 10000"),
+    (changed(2, "0." + "3" * 1000 + " 0"), 2, "1002 characters; give at most 1000"),
     (changed(2, "0.3085 -0.00125"), 2, "negative"), (changed(6, "1 -1"), 6, "negative"),
     (changed(5, "1.0"), 5, "1 number where two"), (changed(5, "1 1 1"), 5, "3 numbers where two"),
     (changed(1, "0x10 1"), 1, "0x10"), (changed(1, "1_0 1"), 1, "1_0"),
@@ -242,7 +242,7 @@ def test_other_patches_are_not_ranges(parts):
     assert replace(problem, v0=(0, 1)).v0 == (0,
                                               1) and problem != Problem(MuldoonMap("0.4", "0.3",
                                                                                    "0.2"))
-    assert repr(problem).startswith("<Problem: 3 harmonics, t[1] = -1..1")
+    assert repr(problem).startswith("<Problem: V(y) = -(0.4 ")
 
 
 def test_the_thesis_in_waves():
@@ -276,7 +276,7 @@ WAVE = {"amplitude": [1], "waves": [(1, 0)]}
      "the phase of harmonic 1: 'pi' is not"),
     ({"amplitude": [], "waves": []}, ValueError, "there are 0 harmonics; give 1 to 16"),
     ({"amplitude": [1] * 17, "waves": [(k, 1) for k in range(17)]}, ValueError, "17 harmonics"),
-    ({"amplitude": [1, 1], "waves": [(1, 0, 2), (1, 0)]}, ValueError,
+    ({"amplitude": [1, 1], "waves": [(1, 0, "2"), (1, 0)]}, ValueError,
      "harmonics 1 and 2 are the same"),
     ({**WAVE, "v0": (1, 0)}, ValueError, "v0: the lower end"),
     ({**WAVE, "axes": (1, 1, 1, 1)}, ValueError, "determinant"),

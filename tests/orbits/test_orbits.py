@@ -153,7 +153,7 @@ def test_an_input_s_potential_has_the_input_s_map(root, tmp_path, file, at):
     if file is None:                    # the page's example, and phases without rational sines
         path = tmp_path / "mine.json"
         path.write_text(json.dumps({"harmonics": [
-            {"k": [1, 0], "amplitude": "1/3", "phase": "cos"}, {"k": [1, 0], "amplitude": "0.2"},
+            {"k": [1, 0], "amplitude": "1/3", "phase": "-cos"}, {"k": [1, 0], "amplitude": "0.2"},
             {"k": [1, -1], "amplitude": "0.3", "phase": "1/3"},
             {"k": [1, -1], "amplitude": "-0.1", "phase": "-3/7"}]}))
     source = SymplecticMap.read(path).at(**at).potential()

@@ -8,7 +8,7 @@ from conftest import ROOT
 
 # From the ground up; a room imports only what is on lower floors.  (_native is compiled; the
 # package itself, "", loads what it is asked for.)
-FLOORS = [["version", "_native", "storage", "model"], ["prover", "tori"], ["parameters"],
+FLOORS = [["version", "_native", "storage"], ["model"], ["prover", "tori"], ["parameters"],
           ["draw"], ["orbits"], ["commands"], ["", "__main__"]]
 BESIDE = ["check", "_build"]            # import nothing of the others
 
@@ -86,7 +86,7 @@ def arrows():
 
 def test_every_room_has_its_floor():
     assert {"_native", *map(room, modules())} == {*BESIDE, *sum(FLOORS, [])}
-    assert len(FLOORS) <= 7
+    assert len(FLOORS) <= 8
 
 
 def test_no_arrow_leads_upwards(arrows):
