@@ -95,7 +95,7 @@ class SymplecticMap(Dynamics):
             if not isinstance(name, str) or not NAME.fullmatch(name) or name in RESERVED:
                 raise ValueError("a parameter's name is a letter and then letters and digits, and "
                                  "none of %s, not %.40r" % (", ".join(RESERVED), name))
-        given = list(self.ranges) or [(-1, 1)] * len(slopes)
+        given = list(self.ranges) or [(Fraction(-1), Fraction(1))] * len(slopes)
         ranges = [ends_of("the range of %s" % name, ends) for name, ends in zip(
             names if len(names) == len(given) else
             ["parameter %d" % m for m in range(1, 1 + len(given))], given)]

@@ -226,9 +226,9 @@ def value(text, **names):
 @pytest.mark.parametrize("problem", [
     Problem(SymplecticMap([(1, 0), (1, -1, "1/2"), (-2, 3, "-1/3")], ["0.4", "-1e-8", "2"],
                           [["0.01", 0, "-1"], [0, "1.23456789", 0]])),
-    Problem(SymplecticMap([(1, 0, "1/2"), (1, 1, 1), (2, 0), (0, 3, "-1/2")],
+    Problem(SymplecticMap([(1, 0, "1/2"), (1, 1, "1"), (2, 0), (0, 3, "-1/2")],
                           [1, "0.5", "-0.25", 1])),
-    Problem(SymplecticMap([(1, 0, "3/4"), (2, 0, 1)], ["-1", 1], [[0, "-0.5"]])),
+    Problem(SymplecticMap([(1, 0, "3/4"), (2, 0, "1")], ["-1", 1], [[0, "-0.5"]])),
     named((1, 0), ("-0.5", "0.25"), ("0.5", 0), (0, 0), waves=(SIN, COS, (0, 1), (1, 1))),
 ], ids=range(4))
 def test_the_potential_is_the_maps(problem):
