@@ -38,19 +38,28 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
-# Files that `make check` leaves out, beside single tests that are marked slow.
-SLOW = ("check/", "commands/test_orbits_cli", "formal/", "loewner/test_loewner",
-        "loewner/test_margins", "loewner/test_waves", "parameters/", "project/test_chart",
-        "project/test_install", "project/test_mutate",
+# Files that `make check` leaves out, except tests marked quick.
+SLOW = ("check/test_check", "check/test_fuzz", "commands/test_orbits_cli", "formal/",
+        "project/test_chart", "project/test_install", "project/test_mutate",
         "project/test_numbers", "project/test_sides", "project/test_types", "project/test_vectors",
         "project/test_where_methods_fail", "prover/test_parallel", "storage/")
 
+# Of the cases of one test `make check` takes 4 at most, the first, the last and two between.
+QUICK_CASES = 4
+
 
 def pytest_collection_modifyitems(items):
+    cases = {}
     for item in items:
-        place = item.path.relative_to(ROOT / "tests").as_posix()
-        if place.startswith(SLOW):
-            item.add_marker("slow")
+        cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for of_one in cases.values():
+        last = len(of_one) - 1
+        taken = {k * last // (QUICK_CASES - 1) for k in range(QUICK_CASES)}
+        for k, item in enumerate(of_one):
+            place = item.path.relative_to(ROOT / "tests").as_posix()
+            slow = place.startswith(SLOW) and not item.get_closest_marker("quick")
+            if slow or k not in taken:
+                item.add_marker("slow")
 
 
 def pytest_terminal_summary(terminalreporter):

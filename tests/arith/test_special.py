@@ -81,6 +81,7 @@ def test_one_after_another(dp):
 
 
 @pytest.mark.parametrize("dp", [1, 10, 35, 60, 250])
+@pytest.mark.slow
 def test_every_size(dp):
     """However often an angle is halved, down to where nothing is left of it."""
     for j in range(int(3.4 * dp) + 40):

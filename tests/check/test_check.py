@@ -392,6 +392,7 @@ def test_a_spot_check_cannot_be_foreseen(deep, run, monkeypatch):
     assert len(set(seen[:20])) == 20 and set(seen[:20]) != set(seen[20:])
 
 
+@pytest.mark.quick
 def test_a_spot_check_that_misses_the_false_leaf_verifies_nothing(moving, run):
     """Of the segment from 0.0120 only the upper half is proved, and the lower is one leaf."""
     text, tree = moving["segment"], tree_of(moving["segment"])
@@ -432,6 +433,7 @@ def test_angles_count_modulo_the_circle(texts, run, centre):
 
 @pytest.mark.parametrize("kind", "01PS")
 @pytest.mark.parametrize("into", "01PSUx")
+@pytest.mark.quick
 def test_flipped_nodes(texts, run, kind, into):
     text = texts["trig274"]
     tree = tree_of(text)
@@ -457,6 +459,7 @@ def test_flipped_nodes(texts, run, kind, into):
             assert status == 1 and (wrong in err or "tree" in err)
 
 
+@pytest.mark.quick
 def test_a_leaf_without_a_proved_mirror_image(texts, run):
     text = texts["trig274"]
     tree = tree_of(text)
@@ -485,6 +488,7 @@ CONTINUE = "; converse -r FILE goes on with the search\n"
     ("?", "not a node of a finished tree, at node 0" + CONTINUE), ("3P?", "not a node"),
     ("4?P", "not a node"),
     ("0" * 1200, "the checker's limit"), ("0" * 40 + "P" * 41, "depth")])
+@pytest.mark.quick
 def test_trees(texts, run, tree, why):
     status, _, err = run(sealed(with_tree(texts["trig278"], tree)))
     assert status == (5 if "limit" in why else 1) and why in err
@@ -524,6 +528,7 @@ def test_together_flipped_to_apart(moving, run, name):
 
 
 @pytest.mark.parametrize("name", ["box", "narrow box", "slanted box"])
+@pytest.mark.quick
 def test_apart_flipped_to_together(moving, run, name):
     """The segment is less than its box; but it has no cuts along one parameter."""
     text = with_field(moving[name], "together", "yes")
@@ -543,6 +548,7 @@ def test_at_once_flipped(moving, run, name):
 
 @pytest.mark.parametrize("name", ["segment", "slanted", "box", "slanted box"])
 @pytest.mark.parametrize("into", "01234?x")
+@pytest.mark.quick
 def test_flipped_cuts(moving, run, generator, name, into):
     """Any cut becomes any other: the claim is the same, so what still passes is still true."""
     text, tree = moving[name], tree_of(moving[name])
@@ -593,6 +599,7 @@ def test_parameters_widened_and_moved(moving, run):
         assert (status, out) == (1 if "symm" in why else 5, "") and why in err, (name, pairs)
 
 
+@pytest.mark.quick
 def test_mirror_images_in_slices_of_the_parameters(moving, run):
     """Of a leaf that is skipped and its mirror image, cut along the parameters and skipped in part:
     the exchange of the angles exchanges a and b, too, unless they move together."""
@@ -618,6 +625,7 @@ def test_mirror_images_in_slices_of_the_parameters(moving, run):
 
 
 @pytest.mark.parametrize("name", ["cuts", "proved", "symmetric", "undecided", "most_cuts"])
+@pytest.mark.quick
 def test_counts(texts, run, name):
     text = texts["trig274"]
     old = int(re.search("(?m)^%s: (.*)$" % name, text).group(1))
@@ -637,6 +645,7 @@ def test_counts(texts, run, name):
     ("kind", "as printed, not a proof", "not meant as a proof"), ("depth", "11", "depth"),
     ("kind", "Sound", "not meant"), ("a", "0.3085 0.00125 0", "wave 1"),
     ("v0", "1", "two decimal")])
+@pytest.mark.quick
 def test_header(texts, run, name, value, why):
     text = with_field(texts["trig274"], name, value)
     status, out, err = run(text)
@@ -704,6 +713,7 @@ def test_other_versions_and_line_ends(texts, run):
     ("c", " " * 9999, 1, "wave 3"), ("depth", "\u0663\u0660", 1, "depth"),
     ("depth", "9" * 19, 1, "depth"), ("most_cuts", "9" * 18, 1, "most_cuts"),
     ("c", "0.617\0 0", 1, "wave 3")])
+@pytest.mark.quick
 def test_numbers(texts, run, name, value, status, why):
     """Whatever they are: an answer soon, and in one line."""
     text = texts["trig274"]
@@ -864,6 +874,7 @@ def one_file(sources):
 
 
 @pytest.mark.skipif(sys.version_info < (3, 10), reason="it cannot name its own modules")
+@pytest.mark.quick
 def test_it_imports_nothing_of_the_program(root):
     """Python's own modules, numpy, and its own: nothing else, however deep in a function."""
     for file in sorted((root / "converse" / "check").rglob("*.py")):
@@ -1498,6 +1509,7 @@ def test_results_and_exceptions(texts, deep, tmp_path):
 
 @pytest.mark.parametrize("shard", [(2, 1), (7, 1), (1, -1), (5, -3), (0, 2), (3, 2), (1, 0),
                                    ("all", 0), ("all", -1)])
+@pytest.mark.quick
 def test_shards_that_do_not_exist_are_refused(texts, tmp_path, shard):
     path, state = tmp_path / "x", tmp_path / "state"
     path.write_text(texts["trig278"], encoding="utf-8")
@@ -1510,6 +1522,7 @@ def test_shards_that_do_not_exist_are_refused(texts, tmp_path, shard):
                                      ("--state", "state", "--shard", "1/1"),
                                      ("--state", "state", "--shard", "1/2")])
 @pytest.mark.parametrize("kind", ["proof", "part", "map"])
+@pytest.mark.quick
 def test_nothing_is_verified_if_a_leaf_is_not_confirmed(texts, maps, run, tmp_path, monkeypatch,
                                                         kind, options):
     """Whatever the reason, as here that the leaves are not looked at."""
@@ -1567,6 +1580,7 @@ def test_forged_segments(texts, run, tree, centre, half):
     assert ("not excluded: " if upper else "not excluded at once") in err
 
 
+@pytest.mark.quick
 def test_nearly_everything_is_not_everything(deep, run):
     """Among boxes that are excluded, hide one whose parameters are not."""
     text = with_parameters(deep, *[("0.13", "0.071")] * 2, ("0.26", "0.142"))
@@ -1594,6 +1608,7 @@ def real(x):
 
 
 @pytest.mark.parametrize("bits", FIXED)
+@pytest.mark.quick
 def test_sincos(bits, generator):
     fixed = FIXED[bits]
     unit = mp.mpf(2) ** -bits
@@ -1610,6 +1625,7 @@ def test_sincos(bits, generator):
         fixed.sincos(1 << bits + 42)
 
 
+@pytest.mark.quick
 def test_taylor_polynomials_of_small_angles():
     """They are within 4 units for angles up to 1/128, whichever term is the last."""
     for bits in range(64, 180):
@@ -1619,6 +1635,7 @@ def test_taylor_polynomials_of_small_angles():
             assert abs(c - mp.cos(r / one) * one) < 4 and abs(s - mp.sin(r / one) * one) < 4
 
 
+@pytest.mark.quick
 def test_roots_and_eigenvalues(generator):
     one = 1 << 64
     for _ in range(4000):
@@ -1802,6 +1819,7 @@ def true_point(generator, criterion, cell):
             [[real(x) for x in claim.xstar], in_frame(claim.frame, [real(x) * mp.pi for x in v])])
 
 
+@pytest.mark.quick
 def test_prisms_cover_their_cells(texts, generator, monkeypatch):
     """The same symbols lead to all amplitudes and, modulo 2 pi, to both angles."""
     monkeypatch.setattr(check, "torus_bound", lambda fixed, *_: 4 * fixed.one)      # unused
@@ -1833,6 +1851,7 @@ def pairs_of(eta):
             itertools.combinations_with_replacement(enumerate(eta), 2)]
 
 
+@pytest.mark.quick
 def test_exact_orbits(texts, generator, monkeypatch):
     """True orbits of a prism are where the centres and columns say, within the errors."""
     monkeypatch.setattr(check, "torus_bound", lambda fixed, *_: 4 * fixed.one)      # unused
@@ -1906,6 +1925,7 @@ def test_exact_bound(texts, generator, monkeypatch, chosen):
     assert cases > 24 * TORTURE and 0 < least < 0.1
 
 
+@pytest.mark.quick
 def test_one_bound_in_two_arithmetics(np, texts, generator, monkeypatch):
     """Doubles and integers choose the same vectors, and lead to the same value, error and bound,
     but for their roundings."""
@@ -2070,6 +2090,7 @@ def test_lockstep_sincos(np, generator):
     assert check.SINE_ROUNDING == 24 * 2.0 ** -53
 
 
+@pytest.mark.quick
 def test_whole_turns(np, generator):
     """They are off by less than a unit of 2^-64 turns, at the ends of a turn, too."""
     turns = [generator.uniform(-1, 1) * 2.0 ** generator.randint(-80, 12) for _ in range(3000)]
@@ -2100,6 +2121,7 @@ def what_an_error_adds(np, text, name):
 
 
 @pytest.mark.parametrize("c, factor", [("0", 1), ("2e-9", 2)])
+@pytest.mark.quick
 def test_roundings_of_each_step_are_counted(np, texts, c, factor):
     """Where columns are 0 and matrices nearly constant, N steps add up to N^2 / 2 times the error
     of one, in the frame of the angles; in the diagonal one each has both coordinates' errors."""
@@ -2109,6 +2131,7 @@ def test_roundings_of_each_step_are_counted(np, texts, c, factor):
     assert (counted > 0.95 * factor * push * 100 ** 2 / 2).all()
 
 
+@pytest.mark.quick
 def test_roundings_of_waves_that_move_are_counted(np, texts):
     """As above, the roundings of what the parameters do to a wave."""
     text = with_parameters(with_tree(texts["trig278"], "P"), ("1e-9", "1e-9"), ("1e-9", "1e-9"),
@@ -2118,6 +2141,7 @@ def test_roundings_of_waves_that_move_are_counted(np, texts):
     assert (counted > 0.95 * moving * 100 ** 2 / 2).all()
 
 
+@pytest.mark.quick
 def test_roundings_of_slopes_where_the_lanes_meet_are_counted(np):
     """Where G is 0, x[1] is off by its columns 3 and 4 and by 1/2, and terms 10 and 20 cancel in
     G: what these lose is multiplied by all of that."""
@@ -2131,6 +2155,7 @@ def test_roundings_of_slopes_where_the_lanes_meet_are_counted(np):
     assert sums.error >= shape.grain * (10 * (3 + 0.5) + 20 * (4 + 0.5))
 
 
+@pytest.mark.quick
 def test_slopes_where_the_lanes_meet_count_with_what_is_unknown_of_x(np):
     """All coefficients of G, of which one is negative, times the 1/2 by which x[1] is off."""
     G = np.array([[[1.0], [-2.0], [0.5]], [[4.0], [0.0], [0.0]]])
@@ -2141,6 +2166,7 @@ def test_slopes_where_the_lanes_meet_count_with_what_is_unknown_of_x(np):
     assert sums.error >= 0.5 * (1 + 2 + 0.5 + 4)
 
 
+@pytest.mark.quick
 def test_l_as_a_double_is_not_larger(generator):
     for _ in range(100):
         one, l = 1 << 96, generator.randrange(1 << 96)
@@ -2276,6 +2302,7 @@ WORST = (worst_bending, worst_remainder, worst_bending)
 
 
 @pytest.mark.parametrize("worst", WORST[:2])
+@pytest.mark.quick
 def test_lockstep_terms(np, generator, worst):
     """What is left of a wave is bounded, hardly too far."""
     assert 0.99 < worst(check, generator, 3000) <= 1
@@ -2302,6 +2329,7 @@ def test_lockstep_terms(np, generator, worst):
     (1, "beta * (rest + third)", "beta * rest"), (1, "beta * (rest + third)", "beta * third"),
     (1, " + W * weight", ""),
     (1, "H * (a * far", "H * H / 2 * (a * far")])
+@pytest.mark.quick
 def test_no_term_may_be_missing(np, generator, worst, old, new):
     """Each of them decides somewhere: without it the bounds fail the test above."""
     source = inspect.getsource((check.bending, check.remainder, check.quadratic)[worst])
@@ -2371,6 +2399,7 @@ def test_lockstep_bound(np, generator, chosen):
     assert cases > 36 * TORTURE and 0 < least < (1e-6 if chosen == "at random" else 1)
 
 
+@pytest.mark.quick
 def test_what_the_centres_miss_counts(np, generator):
     """The centre's step misses `push` at each site (C18), and a centre at either end `rounding`:
     with larger ones every bound that has multipliers is larger."""
@@ -2397,6 +2426,7 @@ def test_what_the_centres_miss_counts(np, generator):
     assert grown > 10
 
 
+@pytest.mark.quick
 def test_sums_in_blocks(np, generator, monkeypatch):
     """Blocks of one site, of three or of all lead to the same sums.  So do their errors; N blocks
     of one site have as many terms one after the other as one block of N, and blocks of three fewer.
@@ -2427,6 +2457,7 @@ def test_sums_in_blocks(np, generator, monkeypatch):
     assert cases > 10
 
 
+@pytest.mark.quick
 def test_sums_of_the_value(np):
     """Multiples of 2^-26 add up exactly, however many of them cancel, and only what is beside them
     is rounded: step (C19)."""
@@ -2446,6 +2477,7 @@ def test_sums_of_the_value(np):
             assert sums.value[lane] * 2 ** 26 % 1 == 0 and abs(sums.low[lane]) <= 4000 / 2 ** 27
 
 
+@pytest.mark.quick
 def test_masses_of_roundings(np, generator, monkeypatch):
     """The masses, of each wave and site, and what (C19) takes of them; none where they are large.
     """
@@ -2534,6 +2566,7 @@ def test_a_leaf_of_long_orbits(np, texts, generator, monkeypatch):
         assert true <= bound < 0.8 * true
 
 
+@pytest.mark.quick
 def test_lockstep_polynomial(np, generator):
     """The left side of (3) is the polynomial but for what it is said to leave, to either side; and
     this is of fourth order."""
@@ -2578,6 +2611,7 @@ def test_lockstep_polynomial(np, generator):
     assert cases > 100 and falls > 20
 
 
+@pytest.mark.quick
 def test_lockstep_boxes_cover_their_cells(np, texts, generator):
     """Of many claims at a time: the same symbols lead to all amplitudes, and to both angles."""
     kinds = shifted = 0
@@ -2626,6 +2660,35 @@ def test_lockstep_boxes_cover_their_cells(np, texts, generator):
     assert kinds > 20 and shifted > 20
 
 
+@pytest.mark.quick
+def test_a_frame_counts_with_its_entries(np, texts):
+    """Where the centres of v0 and v1 lose nearly a unit each, x[1] loses as many as its frame has."""
+    v = 1 + (1 - Fraction(1, 1 << 40)) / (1 << 63)
+    claim = dataclasses.replace(claim_of(with_tree(texts["trig278"], "P")), frame=(60, 1, -1, 60),
+                                centre=(v, v), half=(Fraction(0), Fraction(0)))
+    cell = np.zeros((5, 1), np.int64)
+    *_, X, _, off = check.Lockstep([claim]).box(cell, cell, np.zeros(1, int))
+    for x, found, allowed in zip(in_frame(claim.frame, claim.centre), X[:, 0], off[:, 0]):
+        gap = (x / 2 - Fraction(int(found), 1 << 64) + Fraction(1, 2)) % 1 - Fraction(1, 2)
+        assert 50 < abs(gap) * (1 << 64) < 2.0 ** 64 * float(allowed) / (2 * math.pi)
+
+
+@pytest.mark.quick
+def test_sines_of_a_step_count_with_their_roundings(np, texts, monkeypatch):
+    seen, bending = [], check.bending
+    monkeypatch.setattr(check, "bending", lambda P, H, W, s, c, *others: (
+        seen.append((s, c)), bending(P, H, W, s, c, *others))[1])
+    cell, number = np.zeros((5, 1), np.int64), np.zeros(1, int)
+    fast = check.Lockstep([claim_of(with_tree(texts["trig278"], "P"))])
+    prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
+                          np.array([0.9]))
+    prisms.step()
+    (site,), (allowed,) = prisms.sites, seen
+    for exact, bound in zip((site.s, site.c), allowed):
+        assert (bound >= np.abs(exact) + 23 * check.UNIT * fast.shape.K[:, None]).all()
+
+
+@pytest.mark.quick
 def test_lockstep_corners(np, texts, generator, monkeypatch):
     """Corners of cells, wide or narrow, are those of the box within W and the error of x[1]: also
     of a wave that a claim names 16 times, and of parts that have 64 bits and signs."""
@@ -2660,6 +2723,7 @@ def test_lockstep_corners(np, texts, generator, monkeypatch):
             assert abs(gap - 2 * mp.pi * mp.nint(gap / (2 * mp.pi))) <= error
 
 
+@pytest.mark.quick
 def test_lockstep_xstar(np, texts, generator):
     for _ in range(20):
         text = with_field(with_tree(texts["trig274"], "P"), "xstar", "%s %s" % tuple(
@@ -2715,6 +2779,7 @@ def test_nothing_that_minimizes_is_excluded(np, texts, generator):
     assert excluded > cases / 10 and open_ones > cases / 200
 
 
+@pytest.mark.quick
 def test_numbers_that_are_none_prove_nothing(np, generator):
     for bad in (math.nan, math.inf, 1e300):
         for part, row in itertools.product(range(5), range(3)):
@@ -2804,6 +2869,7 @@ def test_without_numpy(texts, run, monkeypatch):
     assert (status, err) == (0, "") and "in doubles" in out
 
 
+@pytest.mark.quick
 def test_the_fast_path_looks_at_the_machine(np, monkeypatch):
     class Other:
         """numpy, but for one thing."""
@@ -2875,6 +2941,7 @@ def eigenvalue(amplitudes, y, waves=TRIG):
     return (p + r) / 2 + ((p - r) ** 2 / 4 + q * q) ** 0.5
 
 
+@pytest.mark.quick
 def test_bound_over_a_cell(generator):
     fixed, one = FIXED[96], FIXED[96].one
     for n in range(2000):
@@ -2896,6 +2963,7 @@ def test_bound_over_a_cell(generator):
         assert abs(eigenvalue(real_ones, [t / one for t in y], waves) - value) < 1e-14 * scale
 
 
+@pytest.mark.quick
 def test_bound_over_a_cell_where_slopes_cancel():
     """beta - 2 is sin 2x / 2 - sin x, of third order at 0: the rest of third order bounds it."""
     fixed, one = FIXED[96], FIXED[96].one
@@ -2926,6 +2994,7 @@ def highest(amplitudes, waves=TRIG, points=48, starts=4):
     return max(2, np.max(largest(y)))
 
 
+@pytest.mark.quick
 def test_bound_over_the_torus(generator):
     fixed, one = FIXED[96], FIXED[96].one
     for n in range(12 * min(TORTURE, 5)):
@@ -2958,6 +3027,7 @@ def true_bound(abc):
     return highest(abc)
 
 
+@pytest.mark.quick
 def test_least_pivot(texts, generator):
     """l is at most what the true B of the parameters of a cell gives, and hardly less than what
     the true B at the ends of all parameters give, between them."""
@@ -2985,6 +3055,7 @@ def test_least_pivot(texts, generator):
             assert abs(l + 1 / l - max(between)) < 1e-5
 
 
+@pytest.mark.quick
 def test_least_pivot_to_the_last_unit(texts, generator, monkeypatch):
     """With a bound that leaves nothing to spare, and that grows as fast as an eigenvalue can."""
     def bound(abc):
@@ -3033,6 +3104,7 @@ def test_waves_too_weak_for_any_orbit_are_given_up(texts, run, monkeypatch):
         assert (status, out) == (5, "") and "so weak that" in err
 
 
+@pytest.mark.quick
 def test_what_is_too_weak(np, texts, generator, monkeypatch):
     """Where the form of (C3) is not negative if beta has everywhere the least value that it may."""
     text = with_parameters(with_tree(texts["trig274"], "P"), *[("0.25", "0.125")] * 3)
@@ -3058,6 +3130,7 @@ def at_once(text, centre, half, together):
     return check.Criterion(claim_of(text)).at_once()
 
 
+@pytest.mark.quick
 def test_at_once(texts, generator, monkeypatch):
     """True above B = 10/3, false below, of either sign; false with the origin in the box."""
     monkeypatch.setattr(check, "torus_bound", lambda fixed, *_: 4 * fixed.one)      # unused
@@ -3240,6 +3313,7 @@ def test_waves_moved_and_added(others, run):
      (1, 0, 2)),
     ([((1, 2), 0, 1, [0, "0.1", 0]), ((2, 1), 0, 1, [0, 0, "0.1"]), ((1, 1), 0, 1, [1, 0, 0])],
      (0, 2, 1))])
+@pytest.mark.quick
 def test_which_potentials_are_symmetric(texts, generator, waves, order):
     """V with its coordinates exchanged is V with its parameters in that order, or never."""
     claim = claim_of(general(texts["trig274"], waves, xstar=("0.5", "0.5")))
@@ -3262,6 +3336,7 @@ def test_which_potentials_are_symmetric(texts, generator, waves, order):
         assert check.Mirror(claim_of(text)).orders == []
 
 
+@pytest.mark.quick
 def test_symmetric_leaves_of_a_patch(others, run):
     text = others["a patch"]
     tree = tree_of(text)
@@ -3281,6 +3356,7 @@ def test_symmetric_leaves_of_a_patch(others, run):
         assert (status, middle in err) == (1 if middle else 0, True)
 
 
+@pytest.mark.quick
 def test_coefficients_are_those_of_the_potential(generator):
     for _ in range(100):
         waves = [check.Wave(k, phase + generator.randint(-3, 3), exact_decimal(generator, 1),
@@ -3432,6 +3508,7 @@ def test_maps_that_are_no_json(maps, run):
 
 
 @pytest.mark.parametrize("trees", [("O", "O"), ("0OO", "0O1OO")])
+@pytest.mark.quick
 def test_nothing_is_verified_where_nothing_is_proved(maps, texts, run, trees):
     """An empty theorem is none: of a map without a proved cell, of a proof without a proved
     leaf."""
@@ -3448,6 +3525,7 @@ def test_nothing_is_verified_where_nothing_is_proved(maps, texts, run, trees):
         assert run(sealed(with_tree(texts["trig278"], tree)))[0] == 1
 
 
+@pytest.mark.quick
 def test_cells_are_covered_by_their_patches(generator):
     """Exactly: each point of a cell is one of its patch; that of the least r is of that r."""
     for _ in range(300):
@@ -3468,6 +3546,7 @@ def test_cells_are_covered_by_their_patches(generator):
         assert [wave.at(t) for wave in least] == [r0 * x for x in face.d(s0 if t[1] < 0 else s1)]
 
 
+@pytest.mark.quick
 def test_the_bound_of_cells(maps, generator):
     """Above the true B all over the cell, and hardly more."""
     for region in ("b=0", "a=b"):
@@ -3482,6 +3561,7 @@ def test_the_bound_of_cells(maps, generator):
             assert max(true) - 1e-9 <= bound <= max(true) * 1.02
 
 
+@pytest.mark.quick
 def test_proved_from(generator):
     """Against every direction of a fine grid."""
     for _ in range(200):

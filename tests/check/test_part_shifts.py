@@ -122,6 +122,7 @@ def idle():
     return chain(IDLE, [(XSTAR, [("0.002", "0"), ("-0.004", "0.003")])], cut="3")
 
 
+@pytest.mark.slow
 def test_regions_that_move_are_confirmed(both, later, idle, run):
     for link in (both, later, idle):
         status, out, _ = run(text_of(link))
@@ -300,6 +301,7 @@ def test_the_fast_path_is_not_made_for_large_shifts():
 
 @pytest.mark.parametrize("part, shifts, status", [
     (" 0", (0, 0), 3), (" 0", ("-0.8", "0.8"), 5), (" 0.001", ("0.8", "0.8"), 5)])
+@pytest.mark.slow
 def test_shifts_that_sweep_over_orbits_that_minimize(run, part, shifts, status):
     """A leaf that would be excluded if the region stood still, about where its link begins: near
     the elliptic points, from where it moves out of the island."""
@@ -344,6 +346,7 @@ def real(x):
     return mp.mpf(x.numerator) / x.denominator
 
 
+@pytest.mark.slow
 def test_no_orbit_of_a_proved_leaf_minimizes(both, idle):
     """Random points of leaves of parts that move: their true orbits; and, of linked leaves, what a
     graph's map may do to them is in the region of the part, for the same parameters."""

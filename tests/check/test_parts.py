@@ -469,6 +469,7 @@ def random_link(draw):
                             xstar="%s %s" % tuple(map(decimal, x)))), y
 
 
+@pytest.mark.slow
 def test_displacements_against_derivatives():
     """Whatever the derivative of f is between l and beta - l, f(y*) is where the bound says, and
     sometimes near its ends."""
@@ -605,6 +606,7 @@ FOLDS_NOT = {
 
 
 @pytest.mark.parametrize("name", FOLDS)
+@pytest.mark.slow
 def test_a_part_stands_for_its_mirror_image(run, name):
     """Where the exchange of the angles maps its x*, V and its region to themselves."""
     assert run(file_of(**folded_link(**FOLDS[name])))[0] in (0, 3)
@@ -803,6 +805,7 @@ def test_tight_links_are_confirmed(tight, run):
     assert run(file_of(**tight))[0] == 0
 
 
+@pytest.mark.slow
 def test_a_part_that_is_not_proved(tight, two_links, run):
     """The leaves of a part are checked like others, and named."""
     for link, letter in ((tight, "a"), (two_links, "b")):

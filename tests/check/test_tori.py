@@ -187,6 +187,7 @@ GOLDEN_FILES = {
 
 
 @pytest.mark.parametrize("name", GOLDEN_FILES)
+@pytest.mark.slow
 def test_certificates_of_the_program_are_verified(root, run, name):
     data = (root / "golden_outputs" / "tori" / (name + ".torus")).read_bytes()
     status, out, err = run(data)
@@ -235,6 +236,7 @@ CHANGES_OF_TWO_PIECES = [
 
 
 @pytest.mark.parametrize("expected, pattern, new", CHANGES_OF_TWO_PIECES)
+@pytest.mark.slow
 def test_each_piece_is_verified(root, run, expected, pattern, new):
     text = (root / "golden_outputs" / "tori" / "standard-0.1-0.75.torus").read_text()
     body = text[:text.rindex("checksum: ")]
@@ -282,6 +284,7 @@ CHANGES_OF_A_LINE = [
 
 
 @pytest.mark.parametrize("expected, pattern, new", CHANGES_OF_A_LINE)
+@pytest.mark.slow
 def test_a_torus_of_two_angles_that_is_changed(root, run, expected, pattern, new):
     text = (root / "golden_outputs" / "tori" / "line-0.004.torus").read_text()
     body = text[:text.rindex("checksum: ")]
@@ -383,6 +386,7 @@ def test_what_is_not_as_in_the_format_is_rejected(run, change):
 
 
 @pytest.mark.parametrize("change", TOO_MUCH)
+@pytest.mark.slow
 def test_what_is_too_much_is_not_confirmed(run, change):
     status, out, err = run(changed(*change))
     assert (status, out) == (5, "") and "not confirmed: " in err and err.count("\n") == 1, err
@@ -399,6 +403,7 @@ HEAVY = {
 
 
 @pytest.mark.parametrize("name", HEAVY)
+@pytest.mark.slow
 def test_small_files_of_much_work_are_not_confirmed(run, name):
     text = BODY
     for old, new in HEAVY[name]:
@@ -458,6 +463,7 @@ def test_the_facts_of_a_check_are_values(tmp_path):
     assert caught.value.residual > caught.value.needed > 0
 
 
+@pytest.mark.slow
 def test_pieces_are_verified_by_processes(root, tmp_path):
     """The same is said, and what fails in one of them is told with its name."""
     path = root / "golden_outputs" / "tori" / "standard-0.1-0.75.torus"
@@ -471,6 +477,7 @@ def test_pieces_are_verified_by_processes(root, tmp_path):
 
 
 @pytest.mark.parametrize("name", FALSE)
+@pytest.mark.slow
 def test_what_is_false_is_not_confirmed(run, name):
     old, new = FALSE[name]
     text = changed(old, new) if new else sealed(HEADER % 0)
@@ -486,6 +493,7 @@ def test_other_versions_and_files_are_said_to_be_so(run):
         assert (status, out) == (2, "") and why in err
 
 
+@pytest.mark.slow
 def test_a_random_change_of_a_byte_is_noticed(run):
     """With a right checksum: the claim stays the same, or is refused, and nothing else fails."""
     rng = random.Random(7)
@@ -535,6 +543,7 @@ VECTORS = {
 
 
 @pytest.mark.parametrize("name", VECTORS)
+@pytest.mark.slow
 def test_small_divisors_are_bounded(name):
     """By nearly the best constants; and each divisor, computed to forty digits, obeys."""
     polynomial, root, omega, frame, alpha, basis, gamma, least = VECTORS[name]
@@ -558,6 +567,7 @@ def test_small_divisors_are_bounded(name):
 
 
 @pytest.mark.parametrize("bits", [0, 1, 5, 40, 300])
+@pytest.mark.slow
 def test_roots_are_enclosed(bits):
     """Also if another root is near; and multiples are what they say they are."""
     near = 49, -200, 200
@@ -592,6 +602,7 @@ def test_a_wide_enclosure_is_within_three_quarters():
     assert max(errors) <= Fraction(3, 4)
 
 
+@pytest.mark.slow
 def test_decimals_that_cannot_be_told_are_not_printed():
     one = field.Field((-1, 1, 1), Fraction(0), Fraction(1))
     assert one.truncated((Fraction(0), Fraction(-1)), 3) == Fraction(-618, 1000)
@@ -623,6 +634,7 @@ SPIRAL, SEVEN = VECTORS["spiral"][2], ((-1, 1, 0), (-1, 0, 1))
     ((-1, -1, 0, 1), SPIRAL, [[1, 0], [0, 1]], [1, 1]),
     # the largest value is within an edge, of both in turn
     (T49, SEVEN, [[1, 1], [1, -1]], [2, 1]), (T49, SEVEN, [[1, 1], [0, 1]], [2, 1])])
+@pytest.mark.slow
 def test_forms_on_the_unit_ball_are_bounded(polynomial, omega, frame, alpha):
     """Q and mu of (27) in existence.md, by values along the edges; and what follows from them."""
     omega = [tuple(map(Fraction, x)) for x in omega]
@@ -727,6 +739,7 @@ def random_entry(rng, ring, is_real, scale):
 
 
 @pytest.mark.parametrize("n, degree", [(1, 0), (2, 0), (1, 4), (2, 3)])
+@pytest.mark.slow
 def test_products_and_exponentials_are_within_their_radius(n, degree):
     """At points of the strip, where the norm bounds functions."""
     rng = random.Random(n + 10 * degree)
@@ -949,6 +962,7 @@ def conditions(c, waves, rho, kappa, divisors, steps, share, change, e):
 @pytest.mark.parametrize("name", ["golden", "T49"])
 @pytest.mark.parametrize("steps", [0, 3])
 @pytest.mark.parametrize("waves", [[(0.5, 1, 2)], [(40, 2, 300)], [(1e-9, 1, 2)]])
+@pytest.mark.slow
 def test_the_largest_residual_meets_the_conditions(name, steps, waves, monkeypatch):
     polynomial, root, omega, frame, alpha, basis, *_ = VECTORS[name]
     found = divisors_of(polynomial, root, [tuple(map(Fraction, x)) for x in omega], frame, alpha,
@@ -1215,12 +1229,14 @@ def resealed(text, pattern, new):
     return sealed(text)
 
 
+@pytest.mark.slow
 def test_constants_do_not_need_many_times_the_modes_of_the_torus(surface, run, monkeypatch):
     monkeypatch.setattr(tori, "Ring", lambda *_: pytest.fail("a series is computed"))
     status, out, err = run(resealed(surface, "frame: .*", "frame: 1 2 1 3"))
     assert (status, out) == (5, "") and "too many for a torus of " in err
 
 
+@pytest.mark.slow
 def test_a_few_modes_far_out_are_no_reason_for_a_large_box(surface, run, monkeypatch):
     """The number of modes bounds the work."""
     box = tori.Box
@@ -1249,6 +1265,7 @@ def test_a_torus_that_is_nearly_odd(run, tmp_path):
     assert run((tmp_path / "torus").read_text(encoding="utf-8"))[0] == 0
 
 
+@pytest.mark.slow
 def test_the_theorem_is_asked_in_the_norm_of_the_file(root, monkeypatch):
     """kappa, by which |k|_2 <= kappa |k|, is that of its frame and alpha, at each question."""
     asked, allowed = [], tori.allowed

@@ -561,6 +561,7 @@ LIGHT = [seed for seed in range(16) if seed != 11]      # that case has most mod
 
 
 @pytest.mark.parametrize("seed", LIGHT)
+@pytest.mark.slow
 def test_constants_are_those_of_the_page(seed):
     """The constants (11) of the whole torus are upper bounds, and tight."""
     is_odd = seed % 7 == 3
@@ -575,6 +576,7 @@ def test_constants_are_those_of_the_page(seed):
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 5, 6, 8, 10])
+@pytest.mark.slow
 def test_constants_in_a_large_box_are_nearly_the_norms(seed):
     """The bounds are so tight that no sum over modes or powers of s can lack a term."""
     is_odd = seed % 7 == 3
@@ -595,6 +597,7 @@ def test_constants_in_a_large_box_are_nearly_the_norms(seed):
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 5, 6, 8, 9, 13])
+@pytest.mark.slow
 def test_constants_in_a_narrow_box_of_few_bits_are_no_less(seed):
     case = random_case(seed, 0.02)
     torus, sigma = torus_of(case), 1 + Fraction(1, 64)
@@ -607,6 +610,7 @@ def test_constants_in_a_narrow_box_of_few_bits_are_no_less(seed):
 
 
 @pytest.mark.parametrize("seed", LIGHT)
+@pytest.mark.slow
 def test_residuals_in_a_large_box_are_nearly_the_norms(seed):
     """The bounds of ||E(u)||, and of ||e^(i k.x)|| for the waves."""
     is_odd = seed % 7 == 3
@@ -643,6 +647,7 @@ def residual_of(monkeypatch):
 
 
 @pytest.mark.parametrize("seed", [*LIGHT, *range(16, 24)])
+@pytest.mark.slow
 def test_residuals_in_a_narrow_box_of_few_bits_are_within_their_radius(seed, residual_of):
     """E is here the error of the torus that was cut and rounded."""
     is_odd = seed % 7 == 3
@@ -688,6 +693,7 @@ def test_radii_of_exponentials_are_in_the_residual(seed, residual_of, monkeypatc
 @pytest.mark.parametrize("k", [(1,), (40,), (3, 2), (0, 9)])
 @pytest.mark.parametrize("part", [0, 1])
 @pytest.mark.parametrize("p", [Fraction(1, 777), 10 ** 6 + Fraction(1, 3)])
+@pytest.mark.slow
 def test_roundings_of_amplitudes_are_in_the_residual(k, part, p, residual_of, monkeypatch):
     """u = 0 and e^(i k.u) = 1, so E has no other errors than those of amplitudes in 9 bits."""
     case, sigma, n = random_case(len(k) - 1), Fraction(2), len(k)
@@ -738,6 +744,7 @@ def test_means_are_inverted(seed):
 
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("share", [Fraction(1, 128), Fraction(-1, 128)])
+@pytest.mark.slow
 def test_the_radius_of_the_approximation_of_the_inverse_of_A_counts(seed, share, monkeypatch):
     case = random_case(seed, 0.2)
     torus, sigma = torus_of(case), 1 + Fraction(1, 256)
@@ -792,6 +799,7 @@ def test_sums_of_modes_are_no_less(seed):
             assert exact * (1 - ROUGH) <= found <= exact + unit * case.largest * 2
 
 
+@pytest.mark.slow
 def test_lengths_of_modes_are_rounded_up():
     """One mode (k, k), u_k = 3/4 + i: not the last bit of |k|_2 = k 2^(1/2) is missing."""
     head, _, _ = random_case(1, bits=60).text.partition("pieces")

@@ -117,6 +117,7 @@ def test_help_and_version(run):
     assert run("--version") == (0, "converse %s\n" % __version__, "")
 
 
+@pytest.mark.slow
 def test_figure(run, sample, output, tmp_path):
     path = tmp_path / "figure.ps"
     status, out, err = run("-g", path, sample)
@@ -347,6 +348,7 @@ def test_a_figure_has_a_figure_s_name(run, sample, tmp_path, name):
     ("a.EPS", [b"precious", b"%!PS-Adobe-3.0\n%%Creator: another\n"]),
     ("a.svg", [b"<?xml version='1.0'?><svg/>"]),
     ("a.png", [b"precious"]), ("a.pdf", [b"precious"])])
+@pytest.mark.slow
 def test_a_figure_replaces_nothing_but_a_figure(run, sample, tmp_path, name, others):
     path = tmp_path / name
     for text in others:

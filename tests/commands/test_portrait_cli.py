@@ -31,6 +31,7 @@ def inputs(root, tmp_path):
     return found
 
 
+@pytest.mark.slow
 def test_portrait_is_kept_continued_and_drawn(run, inputs, tmp_path):
     pytest.importorskip("matplotlib")
     path, picture = tmp_path / "a.portrait.gz", tmp_path / "a.png"

@@ -54,6 +54,7 @@ def value(out, pattern):
     return float(re.search(pattern.replace("#", r"([0-9.]+(?:e-?[0-9]+)?)"), out)[1])
 
 
+@pytest.mark.slow
 def test_a_theorem(run, tmp_path):
     file = tmp_path / "golden.torus"
     status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
@@ -74,6 +75,7 @@ def test_a_theorem(run, tmp_path):
     assert check.main([str(file)]) == 0             # by other means
 
 
+@pytest.mark.slow
 def test_a_theorem_with_choices(run, tmp_path):
     problem = tmp_path / "small.in"
     problem.write_text("0.01 0\n0.01 0\n0.02 0\n1 1\n1 1\n")
@@ -105,6 +107,7 @@ def test_a_start_from_a_certificate(run, tmp_path):
     assert "its map has 1 angle, and this one 2" in err
 
 
+@pytest.mark.slow
 def test_what_is_not_proved_is_said(run, tmp_path, monkeypatch):
     """A torus that is hardly accurate, with the numbers that the checker found."""
     monkeypatch.setattr(certificate, "_piece", lambda torus, piece=certificate._piece: piece(
@@ -216,6 +219,7 @@ def faulty(verify):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.slow
 def test_a_signal_ends_all_processes(tmp_path, number):
     """While pieces are verified, each of which would take minutes."""
     problem, file, pipe = (tmp_path / name for name in ("range.in", "range.torus", "pipe"))
@@ -240,6 +244,7 @@ def test_a_signal_ends_all_processes(tmp_path, number):
     assert {each.name for each in tmp_path.iterdir()} == {"range.in", "pipe"}
 
 
+@pytest.mark.slow
 def test_a_process_that_dies_is_told(tmp_path):
     """In the midst of its work, while the other one works, too."""
     problem = tmp_path / "range.in"
@@ -272,6 +277,7 @@ def test_a_certificate_is_one_runs_alone(run, tmp_path):
     assert (status, out) == (2, "") and "exists" in err and file.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_report_of_a_range_says_of_which_piece_it_speaks(run, tmp_path):
     """The residual of the piece with the least margin need not be the largest."""
     problem = tmp_path / "standard.in"
@@ -289,6 +295,7 @@ def test_a_report_of_a_range_says_of_which_piece_it_speaks(run, tmp_path):
 @pytest.mark.parametrize("waves, words", [
     ([(1, 0), (0, 1)], "(1, 0) and (0, 1)"), ([(2, 2)], "(1, 0) and (0, 1)"),
     ([(1, 1), (1, -1)], "(1, 1) and (1, -1)")])
+@pytest.mark.slow
 def test_the_report_says_for_which_k_divisors_are_bounded(waves, words):
     """Where the waves span a line, of all k."""
     problem = Problem(SymplecticMap(waves, ["0.001"] * len(waves)))
@@ -335,6 +342,7 @@ def test_a_range_is_told_exactly():
     assert "  for every s in [-1, 1].\n" in report.verdict(proof)
 
 
+@pytest.mark.slow
 def test_a_figure(run, tmp_path):
     figure, problem = tmp_path / "torus.png", tmp_path / "standard.in"
     problem.write_text("0.3 0.01\n0 0\n0 0\n1 1\n1 1\n")

@@ -104,6 +104,7 @@ def test_a_real_proof(root):
 
 
 @pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.slow
 def test_areas_of_random_trees(made_up, shown, seed):
     proof = made_up(random_tree(random.Random(seed), 7), xstar=("9", "9"), v=("1", "1", "1", "0.5"))
     assert share(shown(proof), is_proved) == pytest.approx(area(proof, "P"), abs=0.015)
@@ -247,6 +248,7 @@ def test_parameters_that_move_together(made_up):
     assert "<" not in text
 
 
+@pytest.mark.slow
 def test_legend_overlaps_nothing(made_up):
     """With four kinds and x*, small or large."""
     pytest.importorskip("matplotlib")
@@ -273,6 +275,7 @@ def test_legend_overlaps_nothing(made_up):
 
 
 @pytest.mark.parametrize("count, most", [(plot.RASTER, 300000), (30000, 200000)])
+@pytest.mark.slow
 def test_size_of_svg(made_up, count, most):
     pytest.importorskip("matplotlib")
     assert len(plot.encode(made_up(random_leaves(random.Random(4), count)).plot(), "svg")) < most
@@ -281,6 +284,7 @@ def test_size_of_svg(made_up, count, most):
 @pytest.mark.parametrize("v", [
     ("1", "1", "0", "0"), ("1.2345678901234567", "-0.5", "1e-25", "1e-9"), ("1e20", "1", "1", "1"),
     ("0.5", "0", "0.001", "1e-300")])
+@pytest.mark.slow
 def test_regions_without_width(made_up, shown, recwarn, v):
     """And those that doubles cannot resolve."""
     rows = shown(made_up("0P1PS", v=v, xstar=("9", "9")))
@@ -289,6 +293,7 @@ def test_regions_without_width(made_up, shown, recwarn, v):
 
 
 @pytest.mark.parametrize("ending", [".svg", ".png", ".pdf", ".SVG", ".ps", ".eps"])
+@pytest.mark.slow
 def test_other_formats(made_up, tmp_path, ending):
     """The name decides; the same proof gives the same file."""
     pytest.importorskip("matplotlib")
@@ -335,6 +340,7 @@ def test_without_a_caption(made_up, tmp_path):
 
 
 @pytest.mark.parametrize("raster", [0, 10 ** 9])
+@pytest.mark.slow
 def test_fonts(made_up, monkeypatch, raster):
     """Eight points or more."""
     pytest.importorskip("matplotlib")
@@ -400,6 +406,7 @@ assert first == svg()
 """
 
 
+@pytest.mark.slow
 def test_no_side_effects(root, tmp_path):
     """The user's backend and settings stay as they were, and do not change the file."""
     pytest.importorskip("matplotlib")

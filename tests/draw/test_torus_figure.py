@@ -40,6 +40,7 @@ RANGE = proved(*(torus(CIRCLE, (Fraction(1, 4),),
                        (Fraction(low), Fraction(low + 1))) for low in (-1, 0)))
 
 
+@pytest.mark.slow
 def test_a_proved_torus_is_drawn_as_the_name_says(tmp_path):
     for name, start in (("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("a.pdf", b"%PDF")):
         torus_figure.draw(ONE, str(tmp_path / name))

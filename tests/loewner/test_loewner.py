@@ -203,6 +203,7 @@ def variations(rng, cases):
                                                   s, t) for _ in range(3)]
 
 
+@pytest.mark.slow
 def test_the_bound_holds():
     """The second variation with the core's vectors, along true orbits, is below its bound."""
     proved = seen = close = 0
@@ -832,6 +833,7 @@ WITH_TORI = [
 
 
 @pytest.mark.parametrize("problem", WITH_TORI)
+@pytest.mark.slow
 def test_never_a_false_theorem(problem, monkeypatch):
     """Over one starting point."""
     monkeypatch.setattr(run._Run, "_may_link", lambda self: False)
@@ -842,6 +844,7 @@ def test_never_a_false_theorem(problem, monkeypatch):
 
 
 @pytest.mark.parametrize("problem", WITH_TORI if TORTURE > 1 else WITH_TORI[-2:])
+@pytest.mark.slow
 def test_nor_over_several_starting_points(problem):
     """The search for these takes seconds, and of some of the problems a minute."""
     result = prove(problem, depth=40, method="loewner")
@@ -854,6 +857,7 @@ def grow(task, cell, max_leaves=MANY):
     return search.grow([cell], math.inf, max_leaves, None, False)
 
 
+@pytest.mark.slow
 def test_a_cell_is_what_it_says(proof):
     """A cell of the tree fares like the root of a problem that is just this cell."""
     rng, problem, same = rng_for("loewner cells"), proof.problem, 0
@@ -886,6 +890,7 @@ CPU = Path("/proc/cpuinfo").read_text("utf-8", "replace") if Path("/proc/cpuinfo
     # orbits of very unlike lengths
     Problem(MuldoonMap(("0.9745", "0.9755"), 0, 0)),
     line("0.0130", "0.0200", region=("0.125", "0.125"))])
+@pytest.mark.slow
 def test_any_number_of_lanes_grows_the_same_tree(problem, monkeypatch):
     """Whatever vectors the machine has, and in whatever company a prism is tried."""
     grown, found_lanes = {}, set()
@@ -924,6 +929,7 @@ def random_cells(rng, together, n):
     (line("0.0160", "0.0180"), ("0.85", "0.87")), (line("0.0100", "0.0500", skew="0.75"), None),
     (Problem(MuldoonMap(("1.3", "1.5"), ("-0.25", "0.25"), ("0", "0"))), ("-1", "2")),
     (Problem(MuldoonMap(("1.5", "8"), ("0", "1"), ("-0.5", "0.5"))), ("0.5", "-2"))])
+@pytest.mark.slow
 def test_no_company_matters(problem, star, monkeypatch):
     """What is tried alone, by a search that never tried anything else, fares as in any company, and
     whatever was tried before."""
@@ -978,6 +984,7 @@ def test_a_search_that_was_busy_takes_up_a_tree():
     assert len(texts[0]) > 50 and texts == [texts[0]] * 4
 
 
+@pytest.mark.slow
 def test_any_number_of_lanes_finds_the_same_bits(monkeypatch):
     rng = rng_for("loewner lanes")
     for _ in range(max(60, CASES // 100)):
@@ -1012,6 +1019,7 @@ def test_at_once_above_ten_thirds(low, high, together, expected):
     assert result.at_once == expected
 
 
+@pytest.mark.slow
 def test_not_at_once_by_a_rounding():
     """a and B stay below 4/3 and 10/3; but centre and half-width as doubles add up to more."""
     centre, half = Fraction("0.636378608205740996"), Fraction("0.696954725127592337")

@@ -52,6 +52,7 @@ def table(root):
 
 # ---- proved
 
+@pytest.mark.slow
 def test_the_text_proves_its_margins(tools, read, table):
     proved = {name: float(x) for name, x in tools[0].proved(read, columns=3).items()}
     for name, left in proved.items():
@@ -90,6 +91,7 @@ MUTATIONS = [                           # file, what stands there, what to put i
 
 
 @pytest.mark.parametrize("file, old, new, margin", MUTATIONS)
+@pytest.mark.slow
 def test_less_is_not_proved(tools, read, file, old, new, margin):
     """Neither of the thesis's waves nor, where the margin says so, of 16."""
     roundings = tools[0]
@@ -274,6 +276,7 @@ def worst_margins(tools, read):
     return worst
 
 
+@pytest.mark.slow
 def test_margins_of_general_waves(tools, read, root):
     """Of no margin more is needed than docs/proofs/argument.md proves, and of each some is."""
     text = (root / "docs/proofs/argument.md").read_text("utf-8")

@@ -30,6 +30,7 @@ def angles(rng):
 
 
 @pytest.mark.parametrize("lanes", ["2", "4", "8"])
+@pytest.mark.slow
 def test_sines(lanes, monkeypatch):
     """They are within the 3 units of 2^-62 that turns.h promises, a third of which are needed; the
     double next to a sine and what that lacks are the sine.  The fine sine is within 2^-100."""
@@ -50,6 +51,7 @@ def test_sines(lanes, monkeypatch):
 
 
 @pytest.mark.parametrize("lanes", ["2", "4", "8"])
+@pytest.mark.slow
 def test_what_a_wave_leaves_has_twice_the_digits(lanes, monkeypatch):
     """Within the 2^-95 of bound.c, also where k.n and k.mu cancel."""
     monkeypatch.setenv("CONVERSE_LANES", lanes)
@@ -78,6 +80,7 @@ def test_long_sums_lose_as_little_as_short_ones(x):
 
 
 @pytest.mark.parametrize("k, longest", [("0.9716", 4000), ("0.9", 4000), ("0.9719", 0), ("2", 0)])
+@pytest.mark.slow
 def test_orbits_are_long_only_where_that_helps(k, longest):
     """Where a circle exists, thin prisms close to it are not proved."""
     problem = Problem(MuldoonMap(k, 0, 0))
@@ -132,6 +135,7 @@ def test_a_question_about_long_orbits_obeys_the_time_limit(asked, monkeypatch, t
     assert prove(resume=path) == prove(StandardMap(k=1)) and len(asked) == 2
 
 
+@pytest.mark.slow
 def test_the_longest_orbits():
     """A prism as thin as can be beside a circle takes as many points as it may, and is given up."""
     proof = Proof((Tree(Problem(MuldoonMap("0.2", 0, 0)), None),), Settings(method="loewner"))
@@ -160,6 +164,7 @@ def test_prisms_with_the_longest_orbits_are_not_cut():
     assert grown.text == "U" and grown.steps == [100]
 
 
+@pytest.mark.slow
 def test_orbits_where_a_circle_exists_stay_ordinary():
     """Longer ones, as k = 0.9719 needs (test_numbers.py), are not tried."""
     undecided = prove(Problem(MuldoonMap("0.9", 0, 0)), jobs=1)

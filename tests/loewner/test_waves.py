@@ -173,6 +173,7 @@ def symbols(first, v, t=()):
 
 
 @pytest.mark.parametrize("shifts", [False, True])
+@pytest.mark.slow
 def test_orbits_stay_within_reach(shifts):
     rng = rng_for("waves orbits" + " with shifts" * shifts)
     followed = tight = slanted = 0
@@ -222,6 +223,7 @@ def variations(rng, cases, shifts):
 
 
 @pytest.mark.parametrize("shifts", [False, True])
+@pytest.mark.slow
 def test_the_bound_holds(shifts):
     """The second variation with the core's vectors, along true orbits, is below its bound."""
     seen = proved = close = 0
@@ -426,6 +428,7 @@ def test_a_parameter_that_only_moves_the_region_counts():
     assert cell("1", 50) == cell("1e-9", 30) == (4, [1, 1, 1, 0, 0])
 
 
+@pytest.mark.slow
 def test_straightened_orbits_with_shifts():
     """Where all waves feel s = q.x alone, s and its columns are what the core follows."""
     rng, followed = rng_for("waves straight"), 0

@@ -169,6 +169,7 @@ harmonics = st.fixed_dictionaries(
     {"harmonics": st.one_of(st.lists(harmonics, max_size=4), values)},
     optional={"parameters": st.one_of(st.just({"e": ["0.1", 1]}), values), "v0": values,
               "comments": values, "other": values}), st.integers(0, 300), st.booleans())
+@pytest.mark.slow
 def test_anything(value, length, cut):
     """Whatever is read, the answer is a problem or one line."""
     text = json.dumps(value)
@@ -253,6 +254,7 @@ def test_what_is_odd_of_the_inputs(root):
                          ["standard", "two-harmonics", "froeschle-0.1", "froeschle-0.3",
                           "froeschle-0.5",
                                   "crossed"])
+@pytest.mark.slow
 def test_the_inputs_are_theorems(root, name, tmp_path):
     """Proved; and of a sixteenth of the successors verified by the checker, which takes longer."""
     problem = read_input(root / "inputs" / (name + ".json"))

@@ -299,6 +299,7 @@ def test_bad_patches(arguments, error, words):
                           st.fractions(-2, 2, max_denominator=4))
                 .filter(lambda wave: wave[:2] != (0, 0)), min_size=1, max_size=4,
                 unique_by=lambda wave: (*wave[:2], wave[2] % 2)))
+@pytest.mark.slow
 def test_odd_about_a_point(waves):
     """A point that is named is one; if none is, none of those that two waves leave is one."""
     problem = Problem(SymplecticMap(waves, [1] * len(waves)))

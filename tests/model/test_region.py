@@ -56,6 +56,7 @@ def successors(problem, star, t):
     return result
 
 
+@pytest.mark.slow
 def test_the_centre_of_the_reversal():
     """c0 is between its bounds for all parameters, which the corners attain."""
     rng = rng_for("reversal centre")

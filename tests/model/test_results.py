@@ -46,6 +46,7 @@ def test_the_methods_of_a_result(results, name, tmp_path):
 
 
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.slow
 def test_pictures(results, name):
     figure = pytest.importorskip("matplotlib.figure")
     result = results[name]

@@ -132,6 +132,7 @@ def test_the_flux_at_break_up_scales_as_mackay_says():
     assert pairs[-1].minimax.residue == pytest.approx(0.2501, abs=2e-4)
 
 
+@pytest.mark.slow
 def test_above_break_up_the_flux_tends_to_that_of_the_cantorus():
     """It is soon the same from one approximant to the next, and grows from there as (k - k_c)^eta,
     eta = log 4.33914/log 1.62795 = 3.0117 (MacKay): the slope from three k, extrapolated."""
@@ -158,6 +159,7 @@ def ends(pair):
 
 @pytest.mark.parametrize("eps", [1.2, 2.0, 5.0, 30.0, 100.0])
 @pytest.mark.parametrize("p, q", [(8, 21), (987, 2584), (1, 3000)])
+@pytest.mark.slow
 def test_strong_coupling_and_long_orbits(p, q, eps):
     """The minimax orbit lies between the minimum and its neighbour, and has one way down on either
     side, to one of these and to the other."""

@@ -458,6 +458,7 @@ SURE = {(orbits.trig, RESONANT): 1e-11}         # actions that other steps confi
 
 
 @pytest.mark.parametrize("which", CHECK, ids=lambda which: "%s %s" % (which[0].name, which[1]))
+@pytest.mark.slow
 def test_families(which):
     potential, (p, q) = which
     table = CHECK[which]

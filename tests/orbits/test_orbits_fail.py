@@ -35,6 +35,7 @@ def moved(a, b):
 # ---- finding a state
 
 @pytest.mark.parametrize("eps, far", [(0.0025, 1e-4), (0.0075, 0.005), (0.0125, 5e-4)])
+@pytest.mark.slow
 def test_gradient_flow_stops_far_from_the_orbit(eps, far):
     """A small gradient over a far smaller eigenvalue: the orbit is somewhere else along the soft
     direction.  What flow returns is not called stationary."""
@@ -83,6 +84,7 @@ def test_newton_at_the_start_of_poly():
     assert straight.relax(0.0025).label == "minimum"
 
 
+@pytest.mark.slow
 def test_cholesky_fails_while_the_torus_is_whole_and_the_pivots_do_not():
     """Two eigenvalues are zero but for rounding, which decides whether the Hessian is positive."""
     failed = 0

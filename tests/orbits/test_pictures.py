@@ -65,6 +65,7 @@ def test_a_row_for_each_state(plane, line):
         assert panel.get_title(loc="left").startswith("ε = %r, 3/8: minimum" % state.eps)
 
 
+@pytest.mark.slow
 def test_files(plane, line, saddle):
     for kind, start in START.items():
         assert pictures.states_picture(line, kind).startswith(start)

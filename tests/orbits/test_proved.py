@@ -279,6 +279,7 @@ def test_contains_the_true_orbit(case):
     assert all(0 <= x < 1 for point in orbit.points for x in point)
 
 
+@pytest.mark.slow
 def test_long_types():
     """Shooting needs more digits than an orbit grows by."""
     for name, p, q, eps, digits in (("trig", (65, 86), 114, 0.0125, 90),
@@ -292,6 +293,7 @@ def test_long_types():
                                                                       rel=1e-7)
 
 
+@pytest.mark.slow
 def test_far_below_doubles():
     """Where the least eigenvalue is below the rounding of doubles, phases and all."""
     orbit = prove(orbits.follow(orbits.trig, (65, 86), 114, [0.004])[0])
@@ -597,6 +599,7 @@ def test_potentials():
                     assert ends[1] - ends[0] < Fraction(1, 10**50)
 
 
+@pytest.mark.slow
 def test_bounds_of_the_potentials():
     """Curvature and Lipschitz constant against differences of V'', near the junctions above all."""
     rng = rng_for("bounds of potentials")
@@ -666,6 +669,7 @@ def rough(rng):
 FOUND = {}
 
 
+@pytest.mark.slow
 def test_few_places_state(few):
     rng = rng_for("few places: state")
     for _ in range(150 * TORTURE):
@@ -686,6 +690,7 @@ def test_few_places_state(few):
             assert exact.action[1] - exact.action[0] < Fraction(10**6, 10**places)
 
 
+@pytest.mark.slow
 def test_few_places_least(few):
     """The largest m that is proved is below the truth, and hardly below it."""
     rng = rng_for("few places: least")
@@ -734,6 +739,7 @@ def pivots(beta):
     raise AssertionError("the pivots did not settle")
 
 
+@pytest.mark.slow
 def test_few_places_pivots(few):
     """Whatever blocks within `away` of the state's: their pivots' products lie where they must.
     The intervals are wider than the blur of so few places, far above the rounding of floats."""
@@ -786,6 +792,7 @@ def turned(x):
     return [[d / det, -b / det], [-c / det, a / det]]
 
 
+@pytest.mark.slow
 def test_few_places_certificates(few):
     """What below and above say holds exactly, for all matrices in the balls, however bad the guess
     where to begin, and however little room was left for roundings."""

@@ -34,6 +34,7 @@ def few(tmp_path_factory):
     return found, directory
 
 
+@pytest.mark.slow
 def test_a_torus_is_proved_on_each_ray(few):
     found, directory = few
     points = proved_points(directory)
@@ -43,6 +44,7 @@ def test_a_torus_is_proved_on_each_ray(few):
     assert sorted(max(point) for point, _ in points) == sorted([F("0.06"), F("0.03"), F("0.09")])
 
 
+@pytest.mark.slow
 def test_the_checker_confirms_them(few, capsys):
     for path in few[1].iterdir():
         assert check.main([str(path)]) == 0
@@ -95,6 +97,7 @@ def test_a_torus_of_another_kind_is_refused(few, tmp_path):
         proved_points(tmp_path / "nowhere")
 
 
+@pytest.mark.slow
 def test_the_command_draws_them(few, tmp_path, capsys):
     found, directory = few
     for face, (_, far) in enumerate(found.directions):

@@ -93,6 +93,7 @@ def test_halves_are_the_whole(name):
 
 # ---- the search
 
+@pytest.mark.slow
 def test_a_map(made):
     found, path = made
     kinds = [leaf.kind for leaf in found.leaves()]
@@ -120,6 +121,7 @@ def test_a_cell_with_a_part_above_the_ratio_is_missing(made):
     assert "not all of it is proved" in found.report()
 
 
+@pytest.mark.slow
 def test_the_checker_confirms_it(made):
     found, path = made
     result = check.verify(path)
@@ -128,6 +130,7 @@ def test_the_checker_confirms_it(made):
     assert "%d" % found.count(PROVED) in result.text
 
 
+@pytest.mark.slow
 def test_a_cell_that_is_not_proved_is_not_believed(made, tmp_path):
     """Below the frontier: the checker does not take anybody's word for it."""
     found = ParameterMap.load(made[1])
@@ -146,6 +149,7 @@ def test_what_reaches_to_infinity_is_at_once(made):
             assert leaf.kind == AT_ONCE
 
 
+@pytest.mark.slow
 def test_one_whole_run_or_several(coarse, tmp_path):
     """However it is divided, it ends with all that was asked for."""
     path, runs, handed_out, give = tmp_path / "map.json", 0, [], WorkerPool.give
@@ -214,6 +218,7 @@ def test_progress_says_what_is_done(coarse, tmp_path, monkeypatch):
     assert shares[0] > 0.5 and "estimating" not in text     # it begins where it was left
 
 
+@pytest.mark.slow
 def test_processes(monkeypatch, tmp_path):
     """They estimate, too."""
     monkeypatch.setattr(map_module, "ESTIMATE_GRID", 1)
@@ -253,6 +258,7 @@ def test_workers_that_die(coarse, tmp_path):
 
 
 @pytest.mark.parametrize("proved", [0, 5])      # while it estimates, and with so many cells proved
+@pytest.mark.slow
 def test_an_interruption_loses_nothing(coarse, tmp_path, proved):
     path = tmp_path / "map.json"
 
@@ -364,6 +370,7 @@ def run(*arguments, directory):
     return result.returncode, result.stdout, result.stderr
 
 
+@pytest.mark.slow
 def test_the_command(tmp_path):
     status, out, err = run("--plane", "c=0", "--time-limit", 0, "map.json", directory=tmp_path)
     assert (status, err) == (1, "") and "not all of it is proved" in out
@@ -382,6 +389,7 @@ def test_the_command(tmp_path):
     (("--plane", "b=0", "-g", "m.json", "m.json"), "would overwrite"),
     (("--plane", "b=0", "-g", "m.ps", "m.json"), ".svg or .png or .pdf"),
     (("--plane", "b=0", "-g", "no/m.svg", "m.json"), "cannot be written")])
+@pytest.mark.slow
 def test_bad_usage_is_one_line(tmp_path, arguments, words):
     status, out, err = run(*arguments, directory=tmp_path)
     assert status == 2 and words in err and err.count("\n") == 1 and out == ""
@@ -407,6 +415,7 @@ def test_the_report(made, capsys):
     assert {"Cells", "Prisms", "Reached"} <= labels(out) and labels(out) <= explained()
 
 
+@pytest.mark.slow
 def test_without_the_core_a_map_is_described_and_drawn(made, tmp_path):
     code = ("import sys\nsys.modules['converse._native'] = None\n"
             "from converse.commands.map import main\nsys.exit(main())")
@@ -448,6 +457,7 @@ def test_what_is_written_in_pictures_can_be_read(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("kind", ["svg", "png", "pdf"])
+@pytest.mark.slow
 def test_pictures(made, tmp_path, kind):
     path = tmp_path / ("map." + kind)
     map_figure.draw(made[0], path)

@@ -106,6 +106,7 @@ def test_patch_of_a_strip_holds_all_of_the_strip():
             assert abs(t2) <= 1
 
 
+@pytest.mark.slow
 def test_portrait_is_verified_whole(strips):
     portrait, path = strips
     result = check.verify(path)
@@ -176,6 +177,7 @@ def test_altered_portraits_are_rejected(strips, tmp_path, old, new, why):
         check.verify(path)
 
 
+@pytest.mark.slow
 def test_leaf_that_is_not_proved_is_not_confirmed(strips, tmp_path, monkeypatch):
     """Each U of a column made a P, and the share what it then would be: the leaves are looked at,
     and through one of them a circle passes."""
@@ -223,6 +225,7 @@ def test_regions_must_hold_the_successors_for_all_of_the_strip(strips):
                 read_portrait(resealed(text).encode())
 
 
+@pytest.mark.slow
 def test_portrait_is_continued(strips, tmp_path):
     """A file without some columns: the others are kept as they are."""
     portrait, path = strips

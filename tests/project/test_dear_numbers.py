@@ -39,6 +39,7 @@ XSTAR = {"0.5887": ("1.84", "0")}           # where the program's does not do
 
 @pytest.mark.parametrize("name, value, prisms", [
     pytest.param(*row, marks=() if row[:2] == CHEAP else dear) for row in linked_points()])
+@pytest.mark.slow
 def test_linked_points_of_other_maps(name, value, prisms):
     counts = sharper(POINTS[name][1](value))
     assert counts.linked and counts.proved == prisms

@@ -89,6 +89,7 @@ def test_every_room_has_its_floor():
     assert len(FLOORS) <= 8
 
 
+@pytest.mark.slow
 def test_no_arrow_leads_upwards(arrows):
     floor = {name: i for i, names in enumerate(FLOORS) for name in names}
 

@@ -64,6 +64,7 @@ RUNS = {
 
 
 @pytest.mark.parametrize("name", RUNS)
+@pytest.mark.slow
 def test_the_labels_of_reports(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     for command, words, statuses, expected in RUNS[name]:

@@ -71,6 +71,7 @@ def test_orbits_through_a_region_that_moves_stay_together(narrow):
         assert best < moves((s0, s1 + off * s0 / 3))
 
 
+@pytest.mark.slow
 def test_fewer_prisms(narrow):
     """The range takes several times as many prisms as its lower end alone; hardly more, if the
     region moves with it."""
@@ -114,6 +115,7 @@ def test_where_the_waves_bend_least():
     assert not starts._reaches(((5, 3, 1, 3, 0), (3, 2, 4, 2, 0)), signs)
 
 
+@pytest.mark.slow
 def test_a_range_is_linked_to_a_region_that_moves(monkeypatch):
     """Where links are made of short orbits already.  The second region is half of one that the
     exchange of the angles maps to itself: it moves along v0 alone."""

@@ -71,6 +71,7 @@ def timeless(proof):
         (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))], ["0.05", "0.04", "-0.02"])),
      "spiral")])
 @pytest.mark.parametrize("frame", [(1, 0, 0, 1), DIAGONAL, (2, -1, 1, 2)])
+@pytest.mark.slow
 def test_invariant_tori_obey_the_link(problem, rotation, frame):
     """The map of a torus that exists takes v' where the lemma says, for many pairs of points."""
     torus = find(Problem(SymplecticMap(problem.waves, problem.amplitude)), read_rotation(rotation))
@@ -170,6 +171,7 @@ def test_links_of_cells_are_narrower():
     Problem(SymplecticMap([
         (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))], ["0.3", "-0.1", "0.2"],
                           [["0.1", "0.2", 0], ["-0.1", "0.1", "0.3"]]), axes=DIAGONAL)])
+@pytest.mark.slow
 def test_the_checker_links_no_worse(problem):
     """What is linked with SPARE the checker links, whatever the cell, wide or narrow."""
     waves = [Wave(wave[:2], wave[2], p, tuple(parts)) for wave, p, *parts
@@ -200,6 +202,7 @@ class Everywhere:
         return self.link
 
 
+@pytest.mark.slow
 def test_letters_stand_as_high_up_as_may_be():
     problem = Problem(MuldoonMap("0.1", "0.1", "0.2"), v0=(0, 1), v1=(0, 1))
     still = Everywhere(Link(((Fraction(0), Fraction(0)),) * 2))
@@ -231,6 +234,7 @@ def test_counting():
 
 # ---- whole proofs
 
+@pytest.mark.slow
 def test_a_linked_proof(linked, tmp_path):
     """It is found, written, read and verified by the checker; the report names the points."""
     assert linked.no_tori and len(linked.parts) == 2
@@ -322,6 +326,7 @@ def test_one_region_may_do_for_two_clusters(easily, monkeypatch):
     assert len(proof.parts) == 1 and set(tree.LETTERS) & set(proof.tree) == {"a"}
 
 
+@pytest.mark.slow
 def test_prisms_that_are_skipped_are_not_linked(easily):
     """The checker wants the mirror images of such proved."""
     square = replace(line("0.015"), v0=(Fraction("0.4"), Fraction("1.6")),
@@ -343,6 +348,7 @@ def test_a_smaller_region_is_not_verified(linked):
 @pytest.mark.parametrize("jobs, moments, found", [
     (1, (1, 2, 5, 8, 11), {(0, 0), (0, 1), (2, 0), (2, 1), (2, 2)}),
     (3, (2, 8), {(0, 1), (2, 1)})])
+@pytest.mark.slow
 def test_resumed_at_any_moment(linked, easily, tmp_path, monkeypatch, jobs, moments, found):
     """Whenever it is interrupted, the proof is the same: before the tree, before the parts are
     found, and when none, one or two of these are proved."""
@@ -372,6 +378,7 @@ def test_resumed_at_any_moment(linked, easily, tmp_path, monkeypatch, jobs, mome
     assert states == found
 
 
+@pytest.mark.slow
 def test_leaves_of_all_trees_are_told(linked, easily):
     told = []
     prove(line("0.015"), method="loewner", on_leaf=lambda leaf, points: told.append(leaf.kind))
@@ -405,6 +412,7 @@ def test_orbits_over_another_point_are_as_long_as_over_the_first(easily, monkeyp
     assert proof.no_tori and proof.parts and lengths == {(True, native.ORDINARY), (False, 0)}
 
 
+@pytest.mark.slow
 def test_undecided_stays_undecided(easily):
     """Where there are tori, links prove nothing."""
     proof = prove(line("0.004"), method="loewner", depth=14)
@@ -446,6 +454,7 @@ def test_a_part_that_grows_too_large_is_linked_further(linked, easily, monkeypat
         (1, 0, Fraction(-1, 2)), (0, 1, Fraction(-1, 2)), (1, 1, Fraction(-1, 2))],
                            ["0.02", "0.02", "0.5"])),
      "1.579997", [12, 16, 20, 24])])
+@pytest.mark.slow
 def test_where_there_are_tori_no_starting_points_are_looked_for(problem, x, grown):
     """What is undecided does not shrink there, or takes too many points of orbits: the tree is not
     grown to the depth of clusters."""
@@ -556,6 +565,7 @@ def test_shifts_that_the_exchange_changes():
         assert region.folds(part, ("0.85", "0.85")) == good
 
 
+@pytest.mark.slow
 def test_the_linked_input(root):
     """The Froeschle map of the inputs; the checker confirms all of it."""
     proof = prove(read_input(root / "inputs" / "froeschle-linked.json"), method="loewner")

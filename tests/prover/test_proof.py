@@ -149,6 +149,7 @@ def test_file_says_what_it_is(tmp_path, made_up):
 
 
 @pytest.mark.parametrize("name", ["a.proof", "a.proof.gz"])
+@pytest.mark.slow
 def test_truncation_and_damage_are_noticed(tmp_path, made_up, name):
     path = tmp_path / name
     made_up("0P1SU", comments=("one",)).save(path)

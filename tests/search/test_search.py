@@ -355,6 +355,7 @@ def test_a_search_whose_setting_up_was_stopped_is_good_for_nothing():
     assert lib.cv_prepare(search.handle, ffi.NULL) == lib.CV_EARGUMENT
 
 
+@pytest.mark.slow
 def test_a_locale_with_a_comma(tmp_path):
     """As a graphical toolkit may set it; the test makes one, since few machines have it."""
     if not shutil.which("localedef"):

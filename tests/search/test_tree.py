@@ -53,6 +53,7 @@ def box(cell):
 
 
 @given(TREES, st.data())
+@pytest.mark.slow
 def test_leaves_tile_the_region(text, data):
     assert complete(text)
     text = text[:data.draw(st.integers(0, len(text)))]

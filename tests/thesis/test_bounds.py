@@ -21,6 +21,7 @@ def beta_at(x):
         return beta(*(mp(x[j]) for j in (0, 1, 2, 5, 6)))
 
 
+@pytest.mark.slow
 def test_trace_and_eigenvalues_over_a_prism():
     rng = rng_for("btrace")
     tight = []
@@ -44,6 +45,7 @@ def test_trace_and_eigenvalues_over_a_prism():
     assert tight[len(tight) // 2] > Fraction(2, 5)
 
 
+@pytest.mark.slow
 def test_a_point_is_bounded_to_the_last_places():
     rng = rng_for("point")
     for _ in range(500):
@@ -274,6 +276,7 @@ def test_no_cone(M, k):
         assert low >= high or low <= 0
 
 
+@pytest.mark.slow
 def test_next_block():
     """For blocks d within bounds, and any point of the prism, d' = beta - 1/d is within the
     next."""
@@ -318,6 +321,7 @@ def test_next_block_where_nothing_is_lost(dp):
 
 
 @pytest.mark.parametrize("dp", [1, 2, 3])
+@pytest.mark.slow
 def test_few_digits(dp):
     """The bounds over a prism about as small as the last place."""
     rng = rng_for("few%d" % dp)

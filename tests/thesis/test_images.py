@@ -37,6 +37,7 @@ def random_prism(rng):
 
 
 @pytest.mark.parametrize("as_printed", [False, True])
+@pytest.mark.slow
 def test_inverse(as_printed):
     """Every entry within the error bound returned, and that within two units of 10^-40."""
     rng = rng_for("inverse")
@@ -56,6 +57,7 @@ def test_inverse(as_printed):
 
 
 @pytest.mark.parametrize("dp", [4, 8, 20])
+@pytest.mark.slow
 def test_gauss_jordan_knows_its_error(dp):
     """A single try with no digits to spare: what it says of its error holds, and is no idle
     talk."""
@@ -157,6 +159,7 @@ def test_image_holds_every_image(make, scheme, as_printed):
 
 @pytest.mark.parametrize("dp", [1, 2, 3, 5])
 @pytest.mark.parametrize("make", [list_prism, random_prism])
+@pytest.mark.slow
 def test_image_with_few_digits(make, dp):
     """Prisms about as small as the last place: here the error terms are all that holds."""
     rng = rng_for("few digits %d" % dp)
@@ -180,6 +183,7 @@ def test_image_with_few_digits(make, dp):
     assert tested > 100
 
 
+@pytest.mark.slow
 def test_along_orbits():
     """The orbits of exact points stay in the prisms that follow a prism of the list."""
     rng = rng_for("orbits")
@@ -202,6 +206,7 @@ def test_along_orbits():
     assert followed > 750
 
 
+@pytest.mark.slow
 def test_image_is_not_too_wide():
     """For small prisms the widths are those of the linear map, but for the rotor's turns."""
     rng = rng_for("width")
@@ -230,6 +235,7 @@ def test_image_is_not_too_wide():
 
 
 @pytest.mark.parametrize("make", [list_prism, random_prism])
+@pytest.mark.slow
 def test_widths_are_rounded_up(make):
     """Of prisms so small that nothing else counts: the corners' images touch the image's wall."""
     rng, dp, closest = rng_for("tiny" + make.__name__), 60, -1
@@ -261,6 +267,7 @@ def test_zero_widths():
 
 
 @pytest.mark.parametrize("dp", [12, DP])
+@pytest.mark.slow
 def test_no_zero_width_is_singular(dp):
     """One angle or both without width, the parameters with or without: two images are found."""
     rng, tested = rng_for("zero widths"), 0
@@ -349,6 +356,7 @@ def test_the_sums_over_all_entries(alone):
 
 
 @pytest.mark.parametrize("dp", [1, 2, 4])
+@pytest.mark.slow
 def test_the_error_of_the_inverse(dp):
     """Without parameters the map is linear, and large prisms leave the bounds no slack but that."""
     rng, tested = rng_for("linear%d" % dp), 0
@@ -372,6 +380,7 @@ def test_the_error_of_the_inverse(dp):
 
 @pytest.mark.parametrize("dp", [2, 4])
 @pytest.mark.parametrize("tall", [(3, 4), (5, 6)])
+@pytest.mark.slow
 def test_needles_of_a_linear_map(tall, dp):
     """Without parameters, and one half of the rows far above the other: all rows of |P'^-1 DG P|,
     in rational arithmetic, are at most one."""
@@ -454,6 +463,7 @@ def test_the_roundings_of_the_fixed_form(dp):
             assert outside(inside, step(point_of(prism, eta))) <= CLOSE * 10**20
 
 
+@pytest.mark.slow
 def test_mapped_centre():
     with mpmath.workdps(DIGITS):
         rng = rng_for("centre")
