@@ -599,7 +599,6 @@ def test_parameters_widened_and_moved(moving, run):
         assert (status, out) == (1 if "symm" in why else 5, "") and why in err, (name, pairs)
 
 
-@pytest.mark.quick
 def test_mirror_images_in_slices_of_the_parameters(moving, run):
     """Of a leaf that is skipped and its mirror image, cut along the parameters and skipped in part:
     the exchange of the angles exchanges a and b, too, unless they move together."""
@@ -2662,7 +2661,7 @@ def test_lockstep_boxes_cover_their_cells(np, texts, generator):
 
 @pytest.mark.quick
 def test_a_frame_counts_with_its_entries(np, texts):
-    """Where the centres of v0 and v1 lose nearly a unit each, x[1] loses as many as its frame has."""
+    """Where v0 and v1 lose nearly a unit each, x[1] loses as many as its frame has."""
     v = 1 + (1 - Fraction(1, 1 << 40)) / (1 << 63)
     claim = dataclasses.replace(claim_of(with_tree(texts["trig278"], "P")), frame=(60, 1, -1, 60),
                                 centre=(v, v), half=(Fraction(0), Fraction(0)))

@@ -51,6 +51,7 @@ def test_the_checker_confirms_them(few, capsys):
     assert "invariant Lagrangian graph" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_what_is_there_is_not_proved_again(few, monkeypatch):
     monkeypatch.setattr(vectors, "highest", lambda *_: pytest.fail("asked again"))
     rays.prove_tori(*few, t49, 1 << 15)
@@ -88,6 +89,7 @@ def test_where_one_angle_is_alone_the_golden_circle_is_proved(tmp_path):
     assert points[F("0.3"), 0, 0] == "golden" and points[F("0.03"), F("0.03"), 0] in ("T49", "V1")
 
 
+@pytest.mark.slow
 def test_a_torus_of_another_kind_is_refused(few, tmp_path):
     path = next(few[1].iterdir())
     (tmp_path / "x.torus").write_bytes(path.read_bytes()[:200])
@@ -111,6 +113,7 @@ def test_the_command_draws_them(few, tmp_path, capsys):
     assert "a torus is proved" in picture.read_text()
 
 
+@pytest.mark.slow
 def test_tori_of_another_plane_are_left_out(few, tmp_path, capsys):
     """The tori lie in a = b: one has c = 0 as well, one b = 0, and the third has neither."""
     path, picture = tmp_path / "c.json", tmp_path / "c.svg"

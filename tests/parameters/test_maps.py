@@ -111,6 +111,7 @@ def test_a_map(made):
     assert 1 < found.reached <= 1.3
 
 
+@pytest.mark.slow
 def test_a_cell_with_a_part_above_the_ratio_is_missing(made):
     """What straddles it counts as not yet proved."""
     found = ParameterMap.load(made[1])
@@ -143,6 +144,7 @@ def test_a_cell_that_is_not_proved_is_not_believed(made, tmp_path):
         check.verify(tmp_path / "map.json")
 
 
+@pytest.mark.slow
 def test_what_reaches_to_infinity_is_at_once(made):
     for leaf in made[0].leaves():
         if leaf.cell.high[0] == region.RADIUS:
@@ -195,6 +197,7 @@ def test_the_frame_follows_the_two_largest_waves(abc, frame):
     assert found == frame and xstar is not None
 
 
+@pytest.mark.slow
 def test_progress_says_what_is_done(coarse, tmp_path, monkeypatch):
     class Terminal(io.StringIO):
         def isatty(self):
@@ -287,6 +290,7 @@ def test_arguments_that_make_no_sense(tmp_path, arguments, error):
     assert not os.listdir(tmp_path)
 
 
+@pytest.mark.slow
 def test_nothing_is_overwritten(made, tmp_path):
     path = tmp_path / "map.json"
     path.write_text("precious")
@@ -305,6 +309,7 @@ def test_nothing_is_overwritten(made, tmp_path):
 # ---- the file
 
 @pytest.mark.parametrize("name", ["map.json", "map.json.gz"])
+@pytest.mark.slow
 def test_it_is_what_it_was(made, tmp_path, name):
     found = ParameterMap.load(made[1])
     assert found.save(tmp_path / name) == found.sha256
@@ -314,6 +319,7 @@ def test_it_is_what_it_was(made, tmp_path, name):
         (leaf.cell, leaf.kind, leaf.proof, leaf.tried) for leaf in made[0].leaves()]
 
 
+@pytest.mark.slow
 def test_what_a_map_lacks_is_said(made, tmp_path):
     def refused(**changed):
         data = {**json.loads(made[1].read_text()), **changed}
@@ -332,6 +338,7 @@ def test_what_a_map_lacks_is_said(made, tmp_path):
         assert "its format, %s, is of another version" % other in refused(format=other)
 
 
+@pytest.mark.slow
 def test_a_damaged_file_is_refused_in_a_line(made, tmp_path):
     text = made[1].read_text()
     rng = random.Random(1)
@@ -404,6 +411,7 @@ def test_an_input_is_no_map(root, capsys, name):
     assert "is an input and not a map" in err and "--method loewner" in err and err.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_the_report(made, capsys):
     assert cli.main([str(made[1])]) == 0
     out = capsys.readouterr().out

@@ -28,6 +28,7 @@ PARSERS = {"converse": cli.parser, "converse-check": check.parser, "converse-map
 
 
 @pytest.mark.parametrize("name", [name for name, text in TEXTS.items() if "```python" in text])
+@pytest.mark.slow
 def test_python_examples_run(name, tmp_path):
     """In the order of the page, one after the other, where the inputs are."""
     blocks = re.findall(r"^```python\n(.*?)^```$", TEXTS[name], re.MULTILINE | re.DOTALL)
