@@ -113,8 +113,8 @@ def _amplitudes(potential, rotation, start):
 def _single(found, way, margin):
     """The torus of one potential.  How many modes it needs is known from its decay in doubles, and
     then from the error that is left."""
-    more, torus = 1.0, None
-    for _ in range(ROUNDS):
+    more, torus, error, norm = 1.0, None, None, None
+    for turn in range(1, ROUNDS + 1):
         aim = plan(found, margin, more)
         mesh = aim.mesh(found.mesh)
         way.check_cost(mesh.points)
@@ -125,8 +125,10 @@ def _single(found, way, margin):
             if torus is None else taken(modes, bits, torus)
         way.tell("refining a torus of %d modes%s" % (
             len(modes.at), some(SINGLE * balls(mesh.points, bits + SPARE_BITS))))
-        torus, ratio = refined(Torus(way.potential, None, way.rotation, bits, modes.k.T, numbers,
-                                     aim.strip), modes, aim, margin)
+        before, norm = norm, (mesh.sizes, aim.alpha)
+        torus, ratio, error = refined(
+            Torus(way.potential, None, way.rotation, bits, modes.k.T, numbers, aim.strip), modes,
+            aim, margin, error if norm == before else None, turn == ROUNDS)
         if ratio <= accepted(margin):
             break
         more *= 1.05 + log(ratio * margin) / ((aim.rate - aim.rho) * aim.size)
@@ -259,7 +261,7 @@ class _Pieces:
         self.tell("refining the tori of %s, %d modes of degree %d%s" % (
             _range_text(piece), len(modes.at), degree,
             some(REFINING * BALLS * mesh.points * layers)))
-        torus, ratio = refined(torus, modes, aim, self.margin)
+        torus, ratio, _ = refined(torus, modes, aim, self.margin)
         if ratio <= 10 / self.margin:
             return torus
         self.more *= 1.2                # a shorter piece with as few modes may fail, too

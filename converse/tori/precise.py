@@ -43,9 +43,10 @@ class _Task:
 
     def __init__(self, mesh: Mesh, torus: Torus, wanted: np.ndarray, bits: int) -> None:
         self.mesh, self.torus, self.wanted = mesh, torus, wanted
-        self.shape = (1, *mesh.sizes)[-2:]
-        # Of all k, and then of all -k, where they stand in the matrix of coefficients.  Those of
-        # column q1 are the numbers entries[part] for the slice part = columns[q1].
+        self.shape = (*mesh.sizes, 1)[:2]       # of the matrix of coefficients
+        self.line = mesh.sizes[-1]              # values of a line
+        # Of all k, and then of all -k, where they stand in the matrix.  Those of column q1 are the
+        # numbers entries[part] for the slice part = columns[q1].
         q0, q1 = self._places(np.concatenate([torus.k, -torus.k]).T)
         order = np.argsort(q1, kind="stable")
         self.q0, self.entries = q0[order].tolist(), order.tolist()
@@ -59,17 +60,17 @@ class _Task:
         unit = arb((1, -torus.bits))
         re, im = torus.numbers.reshape(2, torus.degree + 1, -1).transpose(0, 2, 1).tolist()
         self.series = [[acb(a, b) * unit for a, b in zip(*each)] for each in zip(re, im)]
-        step = 2 * arb.pi() / self.shape[1]
+        step = 2 * arb.pi() / self.line
         self.waves = []                 # k, phase, turns per line, angles along a line
         for (*k, phase), a in zip(torus.potential.waves, mesh.waves):
             across, along = (0, *map(int, a))[-2:]
-            angles = [step * (-along * j % self.shape[1]) for j in range(self.shape[1])]
+            angles = [step * (-along * j % self.line) for j in range(self.line)]
             self.waves.append((k[:torus.dimension], phase, across, angles))
 
     def _places(self, k):
         """Where modes stand in the matrix of coefficients: their first indices, and the second."""
         a = self.mesh.coordinates(k)
-        return [x % size for x, size in zip([0 * a[0], *a][-2:], self.shape)]
+        return [x % size for x, size in zip([*a, 0 * a[0]], self.shape)]
 
     def error(self, sigma: acb, is_real: bool) -> np.ndarray:
         n, (m0, m1) = self.torus.dimension, self.shape
@@ -94,8 +95,8 @@ class _Task:
         if is_real:                     # E_0 + i E_1, both real
             other = np.roll(found[0, ::-1, ::-1], 1, (0, 1)).conj()
             found = np.array([(found[0] + other) / 2, (found[0] - other) / 2j][:n])
-        shape = self.mesh.k.shape[1:]
-        return found[:, :, :shape[-1]].reshape(n, *shape) * self.wanted
+        found = found.reshape(n, *self.mesh.sizes)[..., :self.mesh.k.shape[-1]]
+        return found * self.wanted
 
     def _at(self, sigma):
         """The coefficients at sigma: of each component those of all modes."""
@@ -109,12 +110,12 @@ class _Task:
 
     def _forces(self, lines, amplitudes, is_real):
         """Lines of grad V(theta + u) = -sum p_j k_j cos(k_j.x + pi phase_j), from those of u."""
-        m0 = self.shape[0]
+        m0 = self.mesh.points // self.line
         for j0, line in enumerate(lines):
             if is_real:
                 line = [[w.real for w in line[0]], *[[w.imag for w in line[0]]] * (
                     self.torus.dimension - 1)]
-            force = [[0] * self.shape[1]] * self.torus.dimension
+            force = [[0] * self.line] * self.torus.dimension
             for (k, phase, across, angles), p in zip(self.waves, amplitudes):
                 start = arb.pi() * _ball((phase - Fraction(2 * across * j0, m0)) % 2)
                 wave = [(x + (start + angle)).cos()
@@ -129,15 +130,8 @@ class _Task:
 
     def _values(self, functions: Sequence[Line]) -> Iterator[List[Line]]:
         """For j0 = 0, ..., m0 - 1, of each function, a line of its values at the angles
-        -2 pi (j0/m0, j1/m1)."""
+        -2 pi (j0/m0, j1/m1); with one angle all its values."""
         m0, m1 = self.shape
-        if m0 == 1:
-            lines = [[ZERO] * m1 for _ in functions]
-            for line, values in zip(lines, functions):
-                for q1, part in self.columns.items():
-                    line[q1] = values[self.entries[part][0]]
-            yield [acb.dft(lines.pop(0)) for _ in functions]
-            return
         rows: List[Dict[int, Line]] = [{} for _ in functions]
         for row, values in zip(rows, functions):
             for q1, part in self.columns.items():
@@ -145,6 +139,9 @@ class _Task:
                 for q0, entry in zip(self.q0[part], self.entries[part]):
                     column[q0] = values[entry]
                 row[q1] = acb.dft(column)
+        if m1 == 1:                     # one angle
+            yield [row.pop(0, [ZERO] * m0) for row in rows]
+            return
         for j0 in range(m0):
             found = []
             for row in rows:
@@ -158,10 +155,9 @@ class _Task:
                       ) -> Iterator[Tuple[int, int, Line]]:
         """The inverse of `_values`: (number of the function, q1, column) of the columns that are
         kept."""
-        if self.shape[0] == 1:
+        if self.shape[1] == 1:
             for at, line in enumerate(next(lines)):
-                line = acb.dft(line, inverse=True)
-                yield from ((at, q1, [line[q1]]) for q1 in self.kept)
+                yield at, 0, acb.dft(line, inverse=True)
             return
         rows: List[Dict[int, Line]] = [{q1: [] for q1 in self.kept} for _ in range(count)]
         for each in lines:
