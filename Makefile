@@ -34,8 +34,8 @@ endef
 prove: $(VENV)/installed
 	$(VENV)/bin/converse -d30 inputs/trig274.in
 
-# The tests except the slow ones: 226 CPU seconds in November 2026.  The first run also downloads the
-# test tools.
+# The tests except the slow ones, a share of every room (tests/conftest.py).  The first run also
+# downloads the test tools.
 check: $(VENV)/with-test
 	$(VENV)/bin/pytest $(TWO) -q -m 'not slow' tests
 

@@ -147,6 +147,16 @@ def test_doubles_come_back(x):
         assert abs(back - Fraction(x)) <= abs(Fraction(x)) * Fraction(1, 2**51)
 
 
+@given(st.one_of(decimals(), st.floats(-1e300, 1e300).map(lambda x: ("%.40e" % x, Fraction(
+    "%.40e" % x)))))
+@example(("0", Fraction(0)))
+@example(("4e-324", Fraction(4, 10**324)))
+def test_bounds_by_doubles_lie_on_their_sides(x):
+    low, high = call("bounds", x[0], nout=2)
+    assert low <= x[1] <= high
+    assert high - low <= max(abs(x[1]) / 2**50, Fraction(1, 2**1072))
+
+
 def test_doubles_are_written_exactly():
     """0.1 is not the nearest double, and the nearest double is not 0.1."""
     assert call("double", "0.1") == [Fraction(0.1)]

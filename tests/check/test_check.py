@@ -2673,6 +2673,29 @@ def test_a_frame_counts_with_its_entries(np, texts):
 
 
 @pytest.mark.quick
+def test_inverses_of_a_step_count_with_their_roundings(np, generator):
+    """M is not quite the inverse of d: what is left times the rests of the site before is in f."""
+    d = np.array([[generator.uniform(1, 3), generator.uniform(-1, 1), generator.uniform(1.1, 3)]
+                  for _ in range(200)]).T
+    rests, none = np.ones((2, 200)), np.zeros((2, 200))
+    f, M, _ = check.next_rest(d, none, none, rests, none, none, none)
+    for k in range(200):
+        (p, q, r), (m, n, o) = [[Fraction(float(x)) for x in a[:, k]] for a in (d, M)]
+        left = abs(1 - m * p - n * q) + abs(m * q + n * r), \
+            abs(n * p + o * q) + abs(1 - n * q - o * r)
+        assert all(x <= Fraction(float(y)) for x, y in zip(left, f[:, k]))
+
+
+@pytest.mark.quick
+def test_cells_too_fine_for_doubles_are_left_to_the_integers(np, texts):
+    fast, asked = check.Lockstep([claim_of(with_tree(texts["trig278"], "P"))]), []
+    cell = (0,) * 5, (check.FAST_CUTS_MAX + 1, 0, 0, 0, 0)
+    refused, pieces = fast.settle([(0, cell)], [0.9],
+                                  lambda n: (asked.append(n), ("it may be positive", 7))[1])
+    assert asked == [0] and refused == (0, "it may be positive") and pieces == [7]
+
+
+@pytest.mark.quick
 def test_sines_of_a_step_count_with_their_roundings(np, texts, monkeypatch):
     seen, bending = [], check.bending
     monkeypatch.setattr(check, "bending", lambda P, H, W, s, c, *others: (

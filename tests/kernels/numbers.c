@@ -106,6 +106,16 @@ static int as_double(long dp, apm_t in[], apm_t out[])  /* what apm_get_d makes 
     return code_of(apm_set_d(out[0], apm_get_d(in[0])));
 }
 
+static int bounds(long dp, apm_t in[], apm_t out[])     /* doubles not above and not below x */
+{
+    int status = APM_OK;
+
+    (void)dp;
+    for (int j = 0; j < 2 && status == APM_OK; j++)
+        status = apm_set_d(out[j], apm_bound_d(in[0], directions[j]));
+    return code_of(status);
+}
+
 /* An operation of apm.h by its number, with a direction where it takes one. */
 static int operate(int which, apm_t r, const apm_t x, const apm_t y, long n, apm_round_t dir)
 {
@@ -284,6 +294,7 @@ static const struct {
     { { "floor", 1, 1 }, integer_below },
     { { "scale", 2, 1 }, scale },
     { { "order", 1, 1 }, order },
+    { { "bounds", 1, 2 }, bounds },
     { { "in_place", 4, 5 }, in_place },
     { { "double", 1, 1 }, as_double },
     { { "region", 2, 2 }, region },
