@@ -113,7 +113,7 @@ def read_portrait(data):
         if any((wave.k[0] * even + wave.phase - Fraction(1, 2)) % 1 for wave in waves):
             raise Rejected("V is not even about the point that the header names")
     claims = [read_region(line, patch, strip, "column line %d" % at, sha256) for at, line in
-              enumerate(bytes(body).decode("latin-1").splitlines(), 1)]
+              enumerate(bytes(body).decode("latin-1").split("\n")[:-1], 1)]
     if not claims:
         raise Rejected("there are no columns")
     claims[0] = replace(claims[0], parts=tuple(claims[1:]))
@@ -152,8 +152,8 @@ def read_region(line, patch, strip, name, sha256):
                 most_cuts = max(most_cuts, sum(cuts))
             else:
                 lost[cuts[0] + (cuts[STRIP_AXIS] if strip else 0)] += 1
-            if any(cuts[2 + count:]):
-                raise Rejected("the tree cuts a parameter that there is not")
+            if cuts[1] or any(cuts[2 + count:]):
+                raise Rejected("the tree cuts an angle or a parameter that there is not")
     proved, undecided = map(claim.tree.count, "PU")
     claim.counts.update(cuts=proved + undecided - 1, proved=proved, symmetric=0, linked=0,
                         undecided=undecided, most_cuts=most_cuts, depth=deepest,

@@ -160,7 +160,8 @@ def test_no_point_of_twenty_circles_is_excluded(k, least):
     ("columns:\n1.6", "columns:\n1.59", "lies outside"),
     ("P\nchecksum", "?\nchecksum", "not a node"),
     ("U\n", "P\n", "undecided is"),
-    ("P\n", "\n", "incomplete"),
+    ("P\n", "\n", "incomplete"), ("P\n", "1PP\n", "cuts an angle"), ("P\n1", "P\r1", "not four"),
+    ("P\n1", "P\x0b1", "not four"), ("P\n1", "P\x851", "not four"),
     ("columns: 60", "colours: 60", "unknown meaning"),
     ("depth: 10\n", "", "lacks depth"),
 ])
@@ -169,10 +170,10 @@ def test_altered_portraits_are_rejected(strips, tmp_path, old, new, why):
     path, text = tmp_path / "altered", strips[1].read_text()
     assert old in text
     text = new.join(text.rsplit(old, 1) if old.startswith(("U", "P")) else text.split(old, 1))
-    path.write_text(text)
+    path.write_bytes(text.encode())
     with pytest.raises(check.Rejected, match="wrong checksum"):
         check.verify(path)
-    path.write_text(resealed(text))
+    path.write_bytes(resealed(text).encode())
     with pytest.raises(check.Rejected, match=why):
         check.verify(path)
 
