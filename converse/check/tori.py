@@ -642,14 +642,24 @@ def verify_piece(setting, tell, number):
     name = "piece %d of %d" % (number + 1, count) if count > 1 else ""
     _, real, imaginary = quarter_turns(piece, claim.dimension)
 
-    def told(text):
-        tell("%s: %s" % (name, text) if name else text)
+    def verified(is_odd):
+        return verify_width(Torus(setting, piece, is_odd), width,
+                            lambda text: tell("%s: %s" % (name, text) if name else text))
 
     with named(name):
-        if real << 16 <= imaginary:
-            with contextlib.suppress(*[NotConfirmed] * bool(real)):
-                return verify_width(Torus(setting, piece, True), width, told)
-        return verify_width(Torus(setting, piece, False), width, told)
+        if real << 16 > imaginary:
+            return verified(False)
+        try:
+            return verified(True)
+        except NotConfirmed as error:
+            if not real:
+                raise
+            why = error
+        try:
+            return verified(False)
+        except NotConfirmed as error:
+            error.args = "%s; as an odd torus: %s" % (error, why),
+            raise
 
 
 def too_large(residual, needed):

@@ -347,7 +347,7 @@ TOO_MUCH = [
     ("piece 0 0 40", "piece 0 0 99999999"), (" 40 0 %d\n" % len(GOLDEN), " 40 0 99999999\n"),
     ("pieces: 1", "pieces: 99999"), (FIRST, "99999999 0 1 0"), (FIRST, "1 0 %s 0" % ("f" * 3000)),
     (FIRST, "1 0 %s 0" % ("f" * 400)), ("polynomial: -1 1 1", "polynomial: -1 1 1" + "0" * 80),
-    ("rho: 0.3", "rho: " + "1" * 1001), ("rho: 0.3", "rho: 7"), ("rho: 0.3", "rho: 1e299"),
+    ("rho: 0.3", "rho: " + "1" * 3001), ("rho: 0.3", "rho: 7"), ("rho: 0.3", "rho: 1e299"),
     ("rho: 0.3", "rho: 1e-300"), ("rho: 0.3", "rho: 5"), ("alpha: 1", "alpha: 1e9"),
     ("frame: 1", "frame: 1000"),
     ("wave: 1 0 0 0.5", "wave: 1 0 0 1e301"), ("rotation: 0 1", "rotation: 0 1e300"),
@@ -1257,6 +1257,16 @@ def test_the_number_of_modes_is_estimated():
 
 
 @pytest.mark.slow
+def test_both_reasons_are_told_if_a_torus_that_is_nearly_odd_fails(run, monkeypatch):
+    def fails(torus, *_):
+        raise check.NotConfirmed("it is %s" % ("odd" if torus.is_odd else "whole"))
+
+    monkeypatch.setattr(check, "verify_width", fails)
+    text = HEADER % 2 + "1 0 1 -12771844e3\n2 0 0 29cb34dcc\n"
+    assert run(sealed(text))[2].endswith("not confirmed: it is whole; as an odd torus: it is odd\n")
+    assert run(sealed(text.replace("1 0 1 -", "1 0 0 -")))[2].endswith("confirmed: it is odd\n")
+
+
 def test_a_torus_that_is_nearly_odd(run, tmp_path):
     """Parts of 8e-6 that are not odd are left out first, and then are not."""
     torus = prove(Problem(SymplecticMap([(1, 0), (0, 1), (1, 1)], ["0.1", "0.1", "0.000001"])),
