@@ -2,10 +2,11 @@
 
 VERIFIED, REJECTED, UNUSABLE, PART, SPOT_CHECK, NOT_CONFIRMED = range(6)    # exit statuses
 INTERRUPTED = 128                       # and the number of the signal
+PIPE_CLOSED = INTERRUPTED + 13          # as if SIGPIPE had ended the command
 MAX_BYTES = 1 << 28                     # of a proof file, uncompressed
 MAX_CUTS = 1000                         # of a leaf
 MAX_LINE = 1 << 24                      # of the header
-MAX_CHARACTERS = 1000                   # of a number in the header
+MAX_CHARACTERS = 3000                   # of a number; Python prints 4,300 digits of an integer
 MAX_SIZE = 10 ** 300                    # of such a number
 MAX_BITS = 4096                         # of the arithmetic
 MAX_HALVINGS, MAX_PIECES = 24, 4096     # of a leaf, by the checker itself

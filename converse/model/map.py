@@ -24,7 +24,9 @@ THESIS = (1, 0), (0, 1), (1, 1)         # the harmonics of a, b and c
 # which converse.orbits has.
 LINE = Fraction("11.21436")
 PLACES = 40                             # to which an end that is not a finite decimal is enclosed
-MOST_CHARACTERS = 1000                  # of a number; converse-check takes no longer ones
+# Of a number.  A file says sums of two of them, each 10^-300 to 10^300 in size: at most 1,601
+# digits.  converse-check takes 3,000.
+MOST_CHARACTERS = 1000
 MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of k and of a frame
 NAME = re.compile(r"[^\W\d]\w{0,30}(\[[0-9]{1,9}\])?")      # of a parameter
 RESERVED = "J", "J0", "J1", "P", "S", "V", "cos", "pi", "sin", "y", "y0", "y1"     # of theorems
