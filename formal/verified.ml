@@ -754,6 +754,7 @@ exit status:
   4    a spot check in which nothing failed: NOT a verification
   5    not confirmed: the claim is false or its proof beyond the checker's limits
   130  interrupted (129, 143: by SIGHUP, SIGTERM)
+  141  the reader of the output has closed the pipe, as head does
 |}
 
 let cores () =
@@ -889,6 +890,7 @@ let verify options path =
              limits of this checker" (if name = "" then "" else name ^ ": ") (1 + n) proved);
   let said = String.concat "\n" (report file hints total (options.sample <> None)) in
   ignore_signals ();                            (* the last word is to be the only one *)
+  Sys.set_signal Sys.sigpipe Sys.Signal_default;        (* its reader may have enough, as head *)
   print_endline said;
   if options.sample <> None then spot_check
   else if file.claim.of_whole then verified else part

@@ -8,7 +8,7 @@ import signal
 import sys
 
 from .failures import Failure, Unusable
-from .limits import INTERRUPTED, UNUSABLE, VERIFIED
+from .limits import INTERRUPTED, PIPE_CLOSED, UNUSABLE, VERIFIED
 from .progress import complain, reason
 from .run import verify
 from .signals import interruptible
@@ -57,7 +57,8 @@ exit status:
   3    verified in part: for successors in a part of the torus only, or a shard
   4    a spot check in which nothing failed: NOT a verification
   5    not confirmed: the claim is false or its proof beyond the checker's limits
-  130  interrupted (129, 143: by SIGHUP, SIGTERM)""")
+  130  interrupted (129, 143: by SIGHUP, SIGTERM)
+  141  the reader of the output has closed the pipe, as head does""")
     p.add_argument("file", help=(
         "a finished proof file, a map, a portrait or a certificate of existence, perhaps "
         "compressed by gzip"))
@@ -79,6 +80,19 @@ exit status:
     return p
 
 
+def written(text, status):
+    """Prints the text.  Returns the status, or another one if the reader has closed the pipe."""
+    try:
+        print(text, end="", flush=True)
+        return status
+    except OSError as error:
+        with contextlib.suppress(OSError):      # the interpreter must not try again when it ends
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if isinstance(error, BrokenPipeError):
+            return PIPE_CLOSED
+        raise Unusable("the output cannot be written (%s)" % reason(error)) from None
+
+
 def command(argv, options):
     """Fills in the options and does what they say; returns the exit status."""
     try:
@@ -86,21 +100,16 @@ def command(argv, options):
             raise Unusable("the standard output is closed: nowhere to report to")
         for stream in filter(None, (sys.stdout, sys.stderr)):
             stream.reconfigure(errors="backslashreplace")
-        parser().parse_args(argv, options)
+        try:
+            parser().parse_args(argv, options)
+        except SystemExit as end:               # of --help and --version
+            return written("", end.code)
         # Nothing here uses BLAS, whose threads cost 0.03 s of processor time at the start of numpy.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         result = verify(options.file, min(options.jobs, 61), options.sample, options.state,
                         not options.quiet, options.exact, options.shard)
-        try:
-            if result.status != VERIFIED or not options.quiet:
-                print(result.text, flush=True)
-            return result.status
-        except OSError as error:
-            with contextlib.suppress(OSError):  # the interpreter must not try again when it ends
-                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            raise Unusable("the output cannot be written (%s)" % reason(error)) from None
-    except SystemExit as end:                   # of --help and --version
-        return end.code
+        return written((result.text + "\n") * (result.status != VERIFIED or not options.quiet),
+                       result.status)
     except Failure as error:
         status, message = error.status, error.word + str(error)
     except Exception as error:                  # whatever went wrong must not look like success

@@ -618,6 +618,19 @@ def test_a_part_does_not_stand_for_its_mirror_image(run, name):
     assert (status, out) == (5, "") and "is linked to part a, but may lead out of" in err
 
 
+@pytest.mark.parametrize("centre", ["0.25", "-0.25"])
+def test_a_part_and_its_mirror_image_are_all_between_their_ends(centre):
+    """-0.25 <= v1 <= 0.75 with its image holds |v1| <= 0.75, and no more."""
+    for half, inside in (("0.75", True), ("0.7500001", False), ("1", False)):
+        claim = claim_of(file_of("a", v1="0 " + half,
+                                 parts=[(XSTAR, HALF[0], centre + " 0.5", "P")]))
+        check.check_tree(claim)
+        leads_out = contextlib.nullcontext() if inside else pytest.raises(
+            check.NotConfirmed, match="may lead out")
+        with leads_out:
+            check.check_links(claim, check.Criterion(claim))
+
+
 # ---- wrong files: what is changed, and what the checker says
 
 def with_line(text, name, value, number=0):
