@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from converse import MuldoonMap, StandardMap, SymplecticMap, check, tori
-from converse.check.portrait import patch_of_strip, read_portrait
+from converse.check.portrait import check_places, patch_of_strip, read_portrait, read_region
 from converse.model.problem import Problem
 from converse.prover import tree
 from converse.prover.portrait import Portrait, portray, pruned
@@ -176,6 +176,30 @@ def test_altered_portraits_are_rejected(strips, tmp_path, old, new, why):
     path.write_bytes(resealed(text).encode())
     with pytest.raises(check.Rejected, match=why):
         check.verify(path)
+
+
+@pytest.mark.parametrize("tree, strip, lost", [
+    ("0UP", 0, "1/2"), ("2UP", 0, "1"), ("2U0UP", 0, "3/2"), ("3UP", "0.01", "1/2"),
+    ("30UPP", "0.01", "1/4"), ("2UP", "0.01", "1"), ("4UP", "0.01", "1")])
+def test_cuts_of_parameters_do_not_lessen_what_is_undecided(tree, strip, lost):
+    """But for that of t2, along which the strip is cut."""
+    wave = check.claim.Wave((1, 0), Fraction(0), Fraction(1), (Fraction(1, 10),))
+    patch = patch_of_strip(wave, Fraction(strip)) if strip else (wave,)
+    claim = read_region("1 0.5 1 0 " + tree, patch, Fraction(strip), "a line", "")
+    assert claim.counts["lost"] == Fraction(lost)
+
+
+def test_strips_lie_in_one_turn(strips):
+    portrait = read_portrait(strips[1].read_bytes())
+    first = portrait.claims[0]
+    for further in 6.1, 6.3:
+        last = replace(first, xstar=(first.xstar[0] + Fraction(further), 0))
+        longer = replace(portrait, even=None, claims=(*portrait.claims, last))
+        if further < 2 * math.pi:
+            check_places(longer)
+        else:
+            with pytest.raises(check.Rejected, match="outside of the turn"):
+                check_places(longer)
 
 
 @pytest.mark.slow
