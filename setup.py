@@ -21,6 +21,9 @@ To check proofs you need none of these: CONVERSE_WITHOUT_CORE=1 leaves the core 
 make checker makes one file, build/converse-check.pyz, that runs alone.
 """
 
+# With these the linker adds code that flushes small numbers to zero in all of the process.
+FAST = {"-Ofast", "-ffast-math", "-funsafe-math-optimizations", "-mdaz-ftz"}
+
 PROBES = [
     ("there is no working C compiler", "int main(void) { return 0; }", []),
     ("the header Python.h is missing", "#include <Python.h>\nint main(void) { return 0; }", []),
@@ -31,9 +34,13 @@ PROBES = [
 
 
 class BuildExt(build_ext):
-    """Checks what the build needs before it starts, and names what is missing."""
+    """Checks what the build needs before it starts, and names what is missing or may not be."""
 
     def build_extensions(self):
+        for flag in [*self.compiler.compiler_so, *self.compiler.linker_so]:
+            if flag in FAST:
+                sys.exit("converse cannot be built with %s, which makes arithmetic inexact in all "
+                         "of the process; take it out of CFLAGS and LDFLAGS." % flag)
         with tempfile.TemporaryDirectory() as directory:
             source = os.path.join(directory, "probe.c")
             for what, text, libraries in PROBES:

@@ -5,6 +5,7 @@ import contextlib
 import logging
 import math
 import os
+import re
 import signal
 import sys
 import time
@@ -36,6 +37,7 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, **options):
         super().__init__(**{"formatter_class": _Formatter, "allow_abbrev": False, **options})
+        self._negative_number_matcher = re.compile(r"-\.?\d")     # -1e-3 and -0.1:0 are values
 
     def error(self, message):
         raise ConverseError("%s; see %s --help" % (message, self.prog))

@@ -103,10 +103,7 @@ def parser():
         "by continuation from eps 0.  Angles have period 1; those of an input file, and of its "
         "results, have period 2 pi."), epilog=FIND)
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
-    commands = p.add_subparsers(metavar="COMMAND", required=True)
-
-    for each in p, _find_parser(commands):      # -12,16/21 and -0.02:0:0.01 are values
-        each._negative_number_matcher = re.compile(r"-\.?\d")
+    _find_parser(p.add_subparsers(metavar="COMMAND", required=True))
     return p
 
 

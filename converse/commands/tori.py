@@ -3,7 +3,6 @@
 import argparse
 import contextlib
 import os
-import re
 import sys
 import time
 
@@ -42,9 +41,7 @@ def parser():
         "Proves that %s, has an invariant torus with a given rotation vector, a graph J = P + "
         "S'(y)." % MAP))
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
-    commands = p.add_subparsers(metavar="COMMAND", required=True)
-    for each in (p, _prove_parser(commands)):
-        each._negative_number_matcher = re.compile(r"-\.?\d")   # -0.3 is a value
+    _prove_parser(p.add_subparsers(metavar="COMMAND", required=True))
     return p
 
 

@@ -5,7 +5,9 @@ Every picture is drawn by matplotlib (the extra "plot"), whose backend and setti
 
 import io
 import math
+import os
 import re
+import sys
 import textwrap
 from fractions import Fraction
 from functools import partial
@@ -41,10 +43,25 @@ PS_DATE = re.compile(rb"%%CreationDate: .*\n")        # which matplotlib always 
 def check():
     """Raises ConverseError if matplotlib is missing."""
     try:
-        import matplotlib  # noqa: F401
+        _import_matplotlib()
     except ImportError:
         raise files.ConverseError(
             "figures need matplotlib; pip install 'converse-kam[plot]'") from None
+
+
+def _import_matplotlib():
+    """Imports it, whatever backend the environment names: figures here need none, and the one of a
+    notebook may not be installed."""
+    try:
+        import matplotlib  # noqa: F401
+    except ValueError:
+        for name in [name for name in sys.modules if name.startswith("matplotlib")]:
+            del sys.modules[name]               # what was imported before it failed
+        backend = os.environ.pop("MPLBACKEND")
+        try:
+            import matplotlib  # noqa: F401
+        finally:
+            os.environ["MPLBACKEND"] = backend
 
 
 def check_file(path, others=(), formats=FORMATS):

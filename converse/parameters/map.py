@@ -9,7 +9,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple
 from ..model.exact import decimal_text, exact, rounded_text
 from ..storage import files
 from ..storage.files import ConverseError, Path
-from ..storage.kept import Kept, verify_text
+from ..storage.kept import Kept, headline, verify_text
 from ..version import __version__
 from .region import RADIUS, REGIONS, Cell, root
 
@@ -101,6 +101,8 @@ class ParameterMap(Kept):
         The release of the program that did the work.
     sha256
         The SHA-256 of the file, uncompressed; "" if there is none.
+    restored
+        How many proved cells were read from a file, and are believed.
     """
 
     region: str
@@ -110,6 +112,7 @@ class ParameterMap(Kept):
     seconds: float = 0.0
     version: str = __version__
     sha256: str = ""
+    restored: int = 0
 
     @classmethod
     def new(cls, region: str, down_to: Fraction) -> "ParameterMap":
@@ -260,7 +263,8 @@ class ParameterMap(Kept):
             The name of the map's file, for the line that says how to verify it.
         """
         proofs = [leaf.proof["tree"] for leaf in self.leaves() if leaf.proof is not None]
-        lines = ["THEOREM.  The map  y' = y + J',  J' = J - grad V(y),  y modulo 2 pi,",
+        lines = [headline("THEOREM", self.restored, "cell") + ".",
+                 "The map  y' = y + J',  J' = J - grad V(y),  y modulo 2 pi,",
                  "with  V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1),",
                  "has no invariant torus J = P + S'(y) over both angles, P constant, S periodic "
                  "and C1,",
@@ -362,6 +366,7 @@ class ParameterMap(Kept):
             for tree, face, estimate in zip(made.roots, data["faces"], made.estimate):
                 _read_tree(tree, face)
                 estimate.update((exact(s), float(radius)) for s, radius in face["estimate"])
+            made.restored = made.count(PROVED) + made.count(AT_ONCE)
             return made
         except (AttributeError, KeyError, IndexError, TypeError, ValueError) as error:
             raise ConverseError("%s: makes no sense (%s); use an intact copy or start anew"
@@ -390,3 +395,5 @@ def _read_tree(tree, face):
             node.tried = next(tried, 0)
     if todo:
         raise ValueError("the tree of cells ends too early")
+    if not any(node.kind == OPEN for node in tree.nodes() if not node.halves):
+        raise ValueError("no cell of a face is open, but the map with r = 0 has tori")

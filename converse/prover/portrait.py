@@ -22,7 +22,7 @@ from ..model.region import MARGIN, PLACES, reversal_centre
 from ..model.statement import conditions, ended, indented, map_lines
 from ..storage.backup import Backup
 from ..storage.files import ConverseError, Path
-from ..storage.kept import Kept, sealed, unsealed, verify_text
+from ..storage.kept import Kept, headline, sealed, unsealed, verify_text
 from ..storage.signals import interruptible
 from ..version import __version__
 from . import native, tree
@@ -83,6 +83,10 @@ class Portrait(Kept):
         The duration of the search.
     sha256
         The SHA-256 of the file, uncompressed; "" if there is none.
+    version
+        The release of the program that did the work.
+    restored
+        How many columns were read from a file, and are believed.
     """
 
     problem: Problem
@@ -93,6 +97,8 @@ class Portrait(Kept):
     found: Dict[Fraction, Tuple[Region, ...]] = field(default_factory=dict)
     seconds: float = 0.0
     sha256: str = ""
+    version: str = __version__
+    restored: int = 0
 
     @classmethod
     def new(cls, source: Union[SymplecticMap, Problem], columns: int = 600, depth: int = 15,
@@ -210,7 +216,8 @@ class Portrait(Kept):
         claim = ["has no rotational invariant circle through the points (y, y' - y) of these "
                  "prisms that lie in no undecided prism, nor through the images of such points by "
                  "the reversal of time"] if proved else ["was examined"]
-        lines = ["THEOREM, for the proved prisms" if proved else "UNDECIDED: nothing is proved.",
+        lines = [headline("THEOREM, for the proved prisms", self.restored, "column") if proved else
+                 "UNDECIDED: nothing is proved.",
                  *map_lines(self.problem),
                  *ended([*indented([*claim, *conditions(self.problem)])]), ""]
         lines += ["Verify : " + verify_text(file, "portrait")] if proved else []
@@ -258,7 +265,7 @@ class Portrait(Kept):
     def _text(self) -> str:
         problem, shown = self.problem, decimal_text
         return sealed([
-            FIRST_LINE, "program: converse " + __version__,
+            FIRST_LINE, "program: converse " + self.version,
             *["wave: " + " ".join([str(k0), str(k1), str(phase), *map(shown, numbers)])
               for (k0, k1, phase), *numbers in zip(problem.waves, problem.amplitude,
                                                    *problem.parts)],
@@ -284,11 +291,13 @@ class Portrait(Kept):
             even = values["even about"]
             portrait = cls(problem, exact(values["strip"]),
                            None if even == "no" else Fraction(even), int(values["depth"]),
-                           int(values["columns"]), sha256=sha256)
+                           int(values["columns"]), sha256=sha256,
+                           version=values["program"].partition(" ")[2])
             for line in lines[start + 1:]:
                 x, centre, half, shift, nodes = line.split(" ")
                 portrait.found[exact(x)] = portrait.found.get(exact(x), ()) + (
                     Region(exact(centre), exact(half), exact(shift), nodes),)
+            portrait.restored = len(portrait.found)
             portrait.undecided          # TreeError: a tree is none
         except (KeyError, IndexError, TypeError, ValueError) as error:
             raise ConverseError("%s: the portrait makes no sense (%s); use an intact copy or start "
@@ -364,6 +373,9 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
     with interruptible(), Backup(path, resumed=path if resume else None) as backup:
         if path is not None and resume and asked is None:
             portrait = Portrait.load(path)
+            if portrait.version != __version__ and not portrait.complete:
+                raise ConverseError("%s: is of another program, %s; continue it with that release, "
+                                    "or start anew" % (path, portrait.version))
         elif asked is not None and not resume:
             portrait = asked
         else:

@@ -80,6 +80,12 @@ class Kept:
         return files.verified(self, jobs)
 
 
+def headline(theorem: str, restored: int, noun: str) -> str:
+    """The first line of a theorem, which says how much of it this run only read."""
+    return theorem + (", of which %s %s%s read from a file that is believed" % (
+        format(restored, ","), noun, "s were" if restored > 1 else " was")) * bool(restored)
+
+
 def verify_text(file: Optional[Path], what: str) -> str:
     """How to verify the file of a theorem, or how to get one: the line Verify of reports."""
     return "converse-check " + shlex.quote(files.plain(os.fspath(file))) if file else \

@@ -441,6 +441,8 @@ def test_a_point_is_chosen(run, sample, tmp_path):
     for words in ("0.8", "x"), ("1/3", "0"), ("1e999", "0"):
         status, out, err = run("--xstar", *words, sample)
         assert (status, out) == (2, "") and one_line(err) and "--xstar" in err
+    status, out, err = run("-d5", "--xstar", "-1e-3", "-.5e+0", sample)
+    assert status in (0, 1) and err == ""
     status, out, err = run("--xstar", "0.8", "--jobs", "1", sample)
     assert (status, out) == (2, "") and one_line(err)
 

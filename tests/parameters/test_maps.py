@@ -20,7 +20,7 @@ from converse.commands import map as cli
 from converse.draw import map_figure
 from converse.parameters import map as map_module
 from converse.parameters import region, search
-from converse.parameters.map import AT_ONCE, OPEN, PROVED, ParameterMap
+from converse.parameters.map import AT_ONCE, OPEN, PROVED, Node, ParameterMap
 from converse.prover.workers import ATTEMPTS, WorkerPool
 from converse.storage.files import ConverseError
 
@@ -142,6 +142,28 @@ def test_a_cell_that_is_not_proved_is_not_believed(made, tmp_path):
     found.save(tmp_path / "map.json")
     with pytest.raises(check.NotConfirmed):
         check.verify(tmp_path / "map.json")
+
+
+@pytest.mark.slow
+def test_what_was_only_read_is_told_in_the_headline(made):
+    found, path = made
+    assert found.report().startswith("THEOREM.\nThe map  y' = ")
+    again = ParameterMap.load(path)
+    assert again.report().startswith("THEOREM, of which %d cells were read from a file that is "
+                                     "believed.\nThe map" % (
+                                         found.count(PROVED) + found.count(AT_ONCE)))
+
+
+@pytest.mark.slow
+def test_a_map_without_an_open_cell_makes_no_sense(made, tmp_path):
+    """At r = 0 there are tori."""
+    found = ParameterMap.load(made[1])
+    found.roots = [Node(root.cell) for root in found.roots]
+    for root in found.roots:
+        root.decide(AT_ONCE, None)
+    found.save(tmp_path / "map.json")
+    with pytest.raises(ConverseError, match="makes no sense .no cell of a face is open, but"):
+        ParameterMap.load(tmp_path / "map.json")
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from converse import MuldoonMap, StandardMap, SymplecticMap, check, tori
+from converse import ConverseError, MuldoonMap, StandardMap, SymplecticMap, check, tori
 from converse.check.portrait import check_places, patch_of_strip, read_portrait, read_region
 from converse.model.problem import Problem
 from converse.prover import tree
@@ -313,3 +313,23 @@ def test_no_words_say_less_undecided_than_there_is(strips, monkeypatch):
     monkeypatch.setattr(Portrait, "undecided", Fraction("0.096029"))
     assert "30 of 30 columns, at most 9.61% undecided" in repr(strips[0])
     assert "undecided: 9.61%" in title(strips[0])
+
+
+def test_what_was_only_read_is_told_in_the_headline(strips, tmp_path):
+    """And a portrait of another release is neither continued nor relabelled."""
+    found, path = strips
+    assert found.report(path).startswith("THEOREM, for the proved prisms\n")
+    again = Portrait.load(path)
+    assert again.report(path).startswith(
+        "THEOREM, for the proved prisms, of which 30 columns were read from a file that is "
+        "believed\n")
+    text = path.read_text().replace("program: converse ", "program: converse 4.", 1)
+    other = tmp_path / "other.portrait"
+    other.write_text(resealed(text))
+    assert Portrait.load(other)._text() == other.read_text()
+    assert portray(path=other, resume=True).complete            # only described
+    again.found.pop(min(again.found))
+    again.version = "4.0"
+    again.save(other)
+    with pytest.raises(ConverseError, match="is of another program, 4.0; continue it with that"):
+        portray(path=other, resume=True)

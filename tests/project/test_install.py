@@ -4,6 +4,7 @@ import ast
 import json
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -170,3 +171,21 @@ def test_manual_pages_and_completions(root, tmp_path):
         for file in ("bash-completion/completions/" + name, "zsh/site-functions/_" + name,
                      "fish/vendor_completions.d/%s.fish" % name):
             assert name in (tmp_path / file).read_text("utf-8")
+
+
+@pytest.mark.parametrize("flags", ["-Ofast", "-g -ffast-math", "-funsafe-math-optimizations"])
+def test_flags_that_flush_small_numbers_are_refused(flags, root, monkeypatch):
+    """The linker would add code that does so in all of the process, before the core's guard."""
+    setuptools = pytest.importorskip("setuptools")
+    from setuptools.command.build_ext import customize_compiler, new_compiler
+
+    monkeypatch.chdir(root)
+    monkeypatch.setattr(setuptools, "setup", lambda **options: None)
+    build = runpy.run_path("setup.py")["BuildExt"](setuptools.Distribution())
+    for variable in "CFLAGS", "LDFLAGS":
+        monkeypatch.setenv(variable, flags)
+        build.compiler = new_compiler()
+        customize_compiler(build.compiler)
+        with pytest.raises(SystemExit, match="cannot be built with -[Off]"):
+            build.build_extensions()
+        monkeypatch.delenv(variable)
