@@ -3,6 +3,7 @@ members, whatever the operands are, and is not much wider than it must be."""
 
 import ctypes
 import math
+import os
 import re
 import shutil
 import subprocess
@@ -46,7 +47,8 @@ def every(root, tmp_path_factory):
     (folder / "every.c").write_text(CODE)
     flags = re.findall(r'"(-[^"]+)"', re.search(
         r"FLAGS = (\[.*?\])", (root / "converse" / "_build.py").read_text("utf-8"), re.S)[1])
-    subprocess.run(["gcc", *flags, "-O2", "-shared", "-fPIC", "-I%s" % (root / "csrc"),
+    csrc = os.environ.get("CONVERSE_CSRC", root / "csrc")       # tests/mutate has its own
+    subprocess.run(["gcc", *flags, "-O2", "-shared", "-fPIC", "-I%s" % csrc,
                     str(folder / "every.c"), "-lm", "-o", str(folder / "every.so")], check=True)
     function = ctypes.CDLL(str(folder / "every.so")).operate
 

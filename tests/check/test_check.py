@@ -2192,6 +2192,22 @@ def test_the_other_lanes_multiplier_rounds_where_the_lanes_meet(np):
 
 
 @pytest.mark.quick
+def test_roundings_of_slopes_are_counted_at_every_site(np, texts, monkeypatch):
+    """Not only where the lanes meet, which is left out here."""
+    monkeypatch.setattr(check.Prisms, "add_ends", lambda prisms, sums, G, *_: setattr(
+        sums, "ends", np.zeros((prisms.known, *G.shape[1:]))))
+    cell, number = np.zeros((5, 1), np.int64), np.zeros(1, int)
+    text = with_field(with_field(with_tree(texts["trig278"], "P"), "v0", "1 0.001"), "v1", "1 0.001")
+    fast = check.Lockstep([claim_of(text)])
+    prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
+                          np.array([0.3]))
+    assert all(prisms.follow()) and len(prisms.sites) > 1
+    *_, error = prisms.expand()
+    prisms.shape.grain = 1.0                    # after all else was made of it
+    assert prisms.expand()[-1] > error + 1
+
+
+@pytest.mark.quick
 def test_slopes_where_the_lanes_meet_count_with_what_is_unknown_of_x(np):
     """All coefficients of G, of which one is negative, times the 1/2 by which x[1] is off."""
     G = np.array([[[1.0], [-2.0], [0.5]], [[4.0], [0.0], [0.0]]])

@@ -62,7 +62,7 @@ TESTS = {
     "thesis/follow": ["test_search.py", *NUMBERS], "thesis": ["test_images.py", *NUMBERS],
     "model": ["test_bounds.py", *SHARP], "search": ["test_search.py", *SHARP, "test_rigor.py"],
     "loewner/waves": ["test_waves.py", "test_margins.py", *SHARP],
-    "loewner": [*SHARP, "test_margins.py"],
+    "loewner": [*SHARP, "test_margins.py"], "loewner/bound": [*SHARP, "test_turns.py"],
     "orbits/enclosure": ["test_proved.py"],
     "orbits/exponents": ["test_proved.py"], "orbits": FINDERS,
     "check": ["test_tori_bounds.py", "test_tori.py"], "check/torus_file": ["test_tori.py"],
@@ -233,8 +233,10 @@ def failure(test, work):
     """The name of the first test that fails with what was built in work; CRASH, ENDLESS or None."""
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--no-header",
                "--rootdir", str(ROOT), "-c", str(ROOT / "pyproject.toml"), str(test)]
+    csrc = work / "csrc"                # of a mutant of the core
     environment = {**os.environ, "PYTEST_ADDOPTS": "", "PYTHONPATH": str(work),
-                   "PYTHONDONTWRITEBYTECODE": "1", "CONVERSE_CONSOLE": str(work / "console.so")}
+                   "PYTHONDONTWRITEBYTECODE": "1", "CONVERSE_CONSOLE": str(work / "console.so"),
+                   "CONVERSE_CSRC": str(csrc if csrc.exists() else ROOT / "csrc")}
     try:
         done = subprocess.run(command, cwd=work, env=environment, text=True, capture_output=True,
                               timeout=PATIENCE)
