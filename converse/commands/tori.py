@@ -2,15 +2,17 @@
 
 import argparse
 import contextlib
+import math
 import os
 import sys
+import threading
 import time
 
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
 from .common import (MAP, SIGNALS, TOGETHER, Parser, ProgressLine, check_figure, command, ending,
-                     number, read_problem, say, tell, whole_number)
+                     number, read_problem, say, seconds, tell, whole_number)
 
 COMMAND = "converse-tori"
 ENDING = ending(
@@ -20,10 +22,12 @@ ENDING = ending(
     "converse-check   verifies the certificate independently\n"
     "converse         proves that there is no torus at all\n"
     "converse-orbits  finds the periodic orbits near a torus", (
-        (0, "a theorem"), (1, "not found or not proved"),
+        (0, "a theorem"), (1, "not found, not proved, or the time is up"),
         (2, "bad usage, input or file; or the certificate could not be saved"), SIGNALS))
 GIGABYTE = 10 ** 9
 MOST_POINTS = 1 << 26
+MINUTE = 60.0               # A step that takes longer is shown again each minute.
+LOOK_SECONDS = 1.0          # between two looks whether it does
 QUIET_SECONDS = 2.0         # A run of less time writes no step to a stderr that is not a terminal.
 
 
@@ -59,7 +63,8 @@ def _prove_parser(commands):
     p.add_argument("--together", action="store_true",
                    help=TOGETHER)
     p.add_argument("-b", "--backup", metavar="FILE",
-                   help="write the certificate to the new file FILE; compressed if it ends in .gz")
+                   help="write the certificate to the new file FILE; compressed if it ends in .gz. "
+                        "FILE.found has the torus until it is proved")
     p.add_argument("-g", "--graphics", metavar="FILE",
                    help="draw the torus in FILE: SVG, PNG or PDF by its name")
     p.add_argument("-r", "--restore", metavar="FILE",
@@ -73,6 +78,8 @@ def _prove_parser(commands):
                         "is limited by memory alone")
     p.add_argument("--jobs", type=whole_number(1), metavar="N",
                    help="verify N pieces of a range at a time, in processes (default 1)")
+    p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
+                   help="begin no step after this time")
     p.add_argument("--memory", type=_positive, metavar="GB", help="the most memory that "
                    "refining the torus takes, in GB (default: three quarters of the free memory)")
     return p
@@ -82,13 +89,38 @@ def _prove_parser(commands):
 
 class _Steps(ProgressLine):
     """Prints each step when it begins, since one step can take minutes: on a terminal in place of
-    the last step, elsewhere on a new line."""
+    the last step, elsewhere on a new line.  A step that takes minutes is shown each minute."""
+
+    def __enter__(self):
+        self.step, self.since, self.ended = "", self.began, threading.Event()
+        self.thread = threading.Thread(target=self._repeat, daemon=True)
+        self.thread.start()
+        return super().__enter__()
+
+    def __exit__(self, *_):
+        self.ended.set()
+        self.thread.join()
+        super().__exit__(*_)
 
     def __call__(self, step):
+        self.step, self.since = step, time.monotonic()
+        self._show(step)
+
+    def _show(self, text):
         self.due = 0.0
-        super().__call__(lambda: step)
+        super().__call__(lambda: text)
         if not self.shown and time.monotonic() > self.began + QUIET_SECONDS:
-            tell(step, COMMAND)
+            tell(text, COMMAND)
+
+    def _repeat(self):
+        minutes = 1
+        while not self.ended.wait(LOOK_SECONDS):
+            passed = (time.monotonic() - self.since) / MINUTE
+            if passed < 1:
+                minutes = 1
+            elif passed >= minutes:
+                self._show("%s (for %d min)" % (self.step, minutes))
+                minutes += 1
 
 
 def _read_problem(options):
@@ -108,9 +140,34 @@ def _check_outputs(options, locks):
                                 % options.backup)
         files.check_writable(options.backup, regular=True)
         locks.enter_context(files.Lock(options.backup))
-        if os.path.exists(options.backup) and os.path.getsize(options.backup):
-            raise ConverseError("%s: exists; name another file or remove it" % options.backup)
+        for path in options.backup, _found(options):
+            if os.path.exists(path) and os.path.getsize(path) and not (
+                    options.restore is not None and files.same(path, options.restore)):
+                raise ConverseError("%s: exists; name another file or remove it" % path)
     check_figure(options, options.input, options.backup, options.restore)
+
+
+def _found(options):
+    """The file for the torus that was found, until it is proved."""
+    return options.backup + ".found"
+
+
+def _keep(options):
+    """The function that writes the torus to this file, or None without -b."""
+    def keep(text):
+        try:
+            files.write_text(_found(options), text)
+        except ConverseError as error:          # The proof does not need the file.
+            tell(error, COMMAND)
+    return keep if options.backup is not None else None
+
+
+def _left(options):
+    """What the file of the torus that was found is good for, "" if there is none."""
+    if getattr(options, "backup", None) is None or not os.path.exists(_found(options)):
+        return ""
+    return "%s has the torus that was found; converse-check tries to verify it, and -r starts from " \
+        "it" % plain(_found(options))
 
 
 def _rotation(options, potential, start):
@@ -150,19 +207,22 @@ def _prove_torus(options):
         ("start", start), ("margin", options.margin and float(options.margin)),
         ("points", options.points),
         ("memory", options.memory and int(options.memory * GIGABYTE)),
-        ("jobs", options.jobs)) if value is not None}
+        ("jobs", options.jobs), ("keep", _keep(options))) if value is not None}
     began = processor_time()
     with _Steps() as line, numpy.errstate(all="ignore"):
         try:
-            proof = tori.prove(problem, rotation, progress=line, **choices)
-        except (tori.NotFound, tori.NotProved) as reason:
+            proof = tori.prove(problem, rotation, progress=line, time_limit=options.time_limit,
+                               **choices)
+        except (tori.NotFound, tori.NotProved, tori.TimeIsUp) as reason:
             line.clear()
-            say(report.undecided(problem, rotation, reason, _by_hand(options)))
+            say(report.undecided(problem, rotation, reason, _by_hand(options), _left(options)))
             return 1
     certificate = {}
     try:
         if options.backup is not None:
             certificate = {"certificate": options.backup, "checksum": proof.save(options.backup)}
+            with contextlib.suppress(OSError):
+                os.remove(_found(options))
     finally:                            # the theorem is told, even if the disk is full
         say(report.verdict(proof, processor_time() - began, problem=problem, **certificate))
     options.proved = True
@@ -196,7 +256,8 @@ def run(options):
 
 
 def interrupted(options):
-    return "the figure is not drawn" if options.proved else "nothing is proved"
+    return "the figure is not drawn" if options.proved else "; ".join(
+        filter(None, ("nothing is proved", _left(options))))
 
 
 main = command(COMMAND, parser, run, interrupted, proved=False)

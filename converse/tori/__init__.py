@@ -7,6 +7,7 @@
 
 try:
     from .certificate import Certificate, read
+    from .effort import TimeIsUp
     from .find import NotFound, find
     from .proved import NotProved, ProvedTorus, prove
     from .rotation import Rotation, read_rotation
@@ -21,5 +22,5 @@ except ImportError as _error:           # said when something is asked for: the 
             raise AttributeError(name)
         raise ConverseError(_MISSING)
 
-__all__ = ["Certificate", "NotFound", "NotProved", "ProvedTorus", "Rotation", "Strip", "Torus",
-           "find", "prove", "read", "read_rotation"]
+__all__ = ["Certificate", "NotFound", "NotProved", "ProvedTorus", "Rotation", "Strip", "TimeIsUp",
+           "Torus", "find", "prove", "read", "read_rotation"]

@@ -1,8 +1,14 @@
 """About how long calculations take, in seconds of a processor, for those who wait, and how much
-memory."""
+memory; and their end when the time is up."""
 
 import math
 import os
+import time
+from typing import Callable, Optional
+
+from ..storage.files import ConverseError
+
+Tell = Callable[[str], None]
 
 # Seconds for each point of a grid: Newton's method in doubles, and an error with many digits.
 SOLVING, BALLS = 4e-6, 1.0e-5
@@ -12,6 +18,25 @@ SHORT, LONGER = 128, 1.6    # Balls of more than SHORT bits take LONGER times as
 SINGLE, REFINING = 2.5, 2
 # Bytes for each point of a grid while a torus is refined, and more for each point of sigma.
 REFINING_BYTES, LAYER_BYTES = 1300, 100
+
+
+class TimeIsUp(ConverseError):
+    """The time limit of find() or prove() is over; the text names the step that was to begin."""
+
+
+def limited(progress: Optional[Tell], time_limit: float) -> Tell:
+    """progress, or a function that does nothing; from time_limit seconds on it raises TimeIsUp."""
+    if not time_limit >= 0:
+        raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
+    end = time.monotonic() + time_limit
+
+    def tell(step: str) -> None:
+        if time.monotonic() >= end:
+            raise TimeIsUp("the %g seconds of the time limit are over; the next step was: %s"
+                           % (time_limit, step))
+        if progress is not None:
+            progress(step)
+    return tell
 
 
 def balls(points: int, bits: int) -> float:

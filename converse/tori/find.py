@@ -12,7 +12,7 @@ from ..model.map import SymplecticMap
 from ..model.potential import FourierSum
 from ..model.problem import Problem
 from .continuation import POINTS, Found, NotFound, Way, ellipse, newton
-from .effort import BALLS, REFINING, SINGLE, SOLVING, balls, some
+from .effort import BALLS, REFINING, SINGLE, SOLVING, balls, limited, some
 from .newton import Mesh
 from .plan import MARGIN, Weights, plan
 from .refinement import SPARE_BITS, Modes, accepted, layers_for, numbers_of, refined, taken
@@ -33,7 +33,7 @@ MOST_MARGIN = 1e100         # Coefficients times 2^bits are doubles on their way
 
 def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], *,
          start: Optional[Torus] = None, margin: float = MARGIN,
-         points: int = POINTS, memory: Optional[int] = None,
+         points: int = POINTS, memory: Optional[int] = None, time_limit: float = inf,
          progress: Optional[Callable[[str], None]] = None) -> Union[Torus, List[Torus]]:
     """Finds an invariant torus in floating-point numbers; nothing is proved.
 
@@ -52,6 +52,8 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], 
         Of a mesh of angles, at most.
     memory : int, optional
         Bytes that refining the torus may take; by default three quarters of what is free.
+    time_limit : float
+        Seconds, after which no step of the work begins.
     progress : callable, optional
         progress(text) is called with each step of the work.
 
@@ -64,12 +66,14 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], 
     ------
     NotFound
         There is none, as far as can be seen, or it needs more points.
+    TimeIsUp
+        The time limit is over.
     TypeError, ValueError
         Map, rotation vector and start do not go together, or the margin is not from 1 to 1e100.
     """
     if not 1 <= margin <= MOST_MARGIN:
         raise ValueError("the margin, %g, is not from 1 to %g" % (margin, MOST_MARGIN))
-    tell = progress or (lambda words: None)
+    tell = limited(progress, time_limit)
     potential, part = family(source)
     rotation = rotation_of(rotation)
     if rotation.dimension != potential.dimension:

@@ -6,7 +6,7 @@ import math
 import os
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Callable, Dict, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Optional, Sequence, Tuple, Union
 
 from .. import check
 from ..model.exact import Ends, rounded_text
@@ -16,6 +16,7 @@ from ..model.statement import potential_text
 from ..storage.files import ConverseError, Path
 from ..storage.kept import Kept
 from . import certificate
+from .effort import Tell, limited
 from .find import find
 from .rotation import Rotation, rotation_of
 from .torus import Torus, family, problem_of
@@ -23,7 +24,6 @@ from .torus import Torus, family, problem_of
 # If the residual exceeds what is needed by a factor below MOST_LACKING, the torus is found again,
 # with a margin of FINER times this factor.
 MOST_LACKING, FINER = 1e8, 1e4
-Progress = Optional[Callable[[str], None]]
 
 
 class NotProved(ConverseError):
@@ -168,7 +168,8 @@ def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
           rotation: Union[Rotation, str, None] = None, *,
           start: Optional[Torus] = None, margin: Optional[float] = None,
           points: Optional[int] = None, memory: Optional[int] = None, jobs: int = 1,
-          progress: Progress = None) -> ProvedTorus:
+          time_limit: float = math.inf, progress: Optional[Tell] = None,
+          keep: Optional[Tell] = None) -> ProvedTorus:
     """Proves that there is an invariant torus near the given one, or near one that is found first.
 
     Parameters
@@ -181,8 +182,12 @@ def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
         With a map: what `find` takes.
     jobs : int
         How many pieces of a range are verified at a time, in processes.
+    time_limit : float
+        Seconds, after which no step of the work begins.
     progress : callable, optional
         progress(text) is called with each step of the work.
+    keep : callable, optional
+        keep(text) is called with the certificate of a torus before the checker verifies it.
 
     Returns
     -------
@@ -194,6 +199,8 @@ def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
         The checker does not confirm the torus.
     NotFound
         As `find` raises it.
+    TimeIsUp
+        The time limit is over.
     ValueError
         The arguments do not go together, or the checker refuses what the torus claims.
 
@@ -204,7 +211,7 @@ def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
     """
     if jobs < 1:
         raise ValueError("jobs is %s; at least one piece is proved at a time" % jobs)
-    tell = progress or (lambda text: None)
+    tell = limited(progress, time_limit)
     finding: Dict[str, Any] = {name: value for name, value in (
         ("start", start), ("margin", margin), ("points", points), ("memory", memory))
         if value is not None}
@@ -216,25 +223,25 @@ def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
         tori = [source] if isinstance(source, Torus) else list(source)
         if rotation is not None and any(torus.rotation != rotation for torus in tori):
             raise ValueError("the torus has another rotation vector than the one that is given")
-        return _verified(tori, jobs, tell)
+        return _verified(tori, jobs, tell, keep)
     if rotation is None:
         raise ValueError("a map needs a rotation vector")
     tell("looking for a torus")
     try:
-        return _proved(source, rotation, find(source, rotation, progress=progress, **finding),
-                       jobs, tell)
+        return _proved(source, rotation, find(source, rotation, progress=tell, **finding),
+                       jobs, tell, keep)
     except NotProved as failure:
         lacking = failure.residual / failure.needed if failure.needed else math.inf
         if not 1 < lacking < MOST_LACKING or margin:
             raise
     tell("looking for a more accurate torus")
     finding["margin"] = FINER * lacking
-    return _proved(source, rotation, find(source, rotation, progress=progress, **finding), jobs,
-                   tell)
+    return _proved(source, rotation, find(source, rotation, progress=tell, **finding), jobs, tell,
+                   keep)
 
 
-def _proved(problem, rotation, found, jobs, tell):
-    proof = _verified([found] if isinstance(found, Torus) else found, jobs, tell)
+def _proved(problem, rotation, found, jobs, tell, keep):
+    proof = _verified([found] if isinstance(found, Torus) else found, jobs, tell, keep)
     torus = proof.torus
     if (torus.potential, torus.part, torus.rotation) != (*family(problem), rotation) \
             or _ends(proof.pieces) != ((Fraction(-1), Fraction(1)) if torus.part else
@@ -248,13 +255,15 @@ def _ends(pieces: Sequence[Piece]) -> Ends:
     return pieces[0].torus.piece[0], pieces[-1].torus.piece[1]
 
 
-def _verified(tori, jobs, tell):
+def _verified(tori, jobs, tell, keep=None):
     """Asks the checker to verify a certificate of these tori."""
     if not tori:
         raise ValueError("there is no torus")
     text, began = certificate.text(tori), processor_time()
     if len({(torus.potential, torus.part, torus.rotation, torus.strip[:2]) for torus in tori}) > 1:
         raise ValueError("the tori are of different potentials, rotation vectors or norms")
+    if keep is not None:
+        keep(text)
     tell("verifying the torus" if len(tori) == 1 else "verifying %d pieces" % len(tori))
     try:
         claim = check.read_torus(text.encode())

@@ -12,6 +12,7 @@ from ..model.statement import TORUS, conditions, ended, indented, labelled, map_
 from ..storage.files import plain
 from ..storage.kept import verify_text
 from ..version import __version__
+from .effort import TimeIsUp
 from .find import NotFound
 from .proved import NotProved, Piece, ProvedTorus
 from .rotation import Rotation, element_text, polynomial_text
@@ -153,19 +154,22 @@ def _divisors(piece: Piece, strip: Strip) -> Iterator[Tuple[str, str]]:
             "(%s)" % ", ".join(map(str, k)) for k in piece.basis), " + ".join(terms))
 
 
-def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotProved],
-              by_hand: Sequence[str] = ()) -> str:
+def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotProved, TimeIsUp],
+              by_hand: Sequence[str] = (), left: str = "") -> str:
     """The report without a theorem, and why there is none.
 
-    by_hand: flags that took a choice from the program."""
+    by_hand: flags that took a choice from the program; left: about the torus that was found."""
     n, stated = rotation.dimension, _stated(problem)
     lines = ["UNDECIDED: nothing is proved.  There may be no %s with this %s (see converse)." % (
         TORUS[n], VECTOR[n]), *map_lines(stated),
              *ended(indented(["was examined " + " ".join(conditions(stated))])), ""]
-    entries = [("Not found" if isinstance(reason, NotFound) else "Not proved",
+    entries = [("Time limit" if isinstance(reason, TimeIsUp) else
+                "Not found" if isinstance(reason, NotFound) else "Not proved",
                 plain(" ".join(str(reason).split())))]
     if isinstance(reason, NotFound):
         entries += _reached(problem, reason.amplitude)
+    if left:
+        entries.append(("Found", left))
     if by_hand:
         entries.append(("By hand", "%s; without such a flag the program chooses"
                         % ", ".join(by_hand)))

@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 from fractions import Fraction
 
 import pytest
@@ -240,8 +241,11 @@ def test_a_signal_ends_all_processes(tmp_path, number):
         out, err = run.communicate(timeout=300)
         assert told.read() in (b"", b"verifying")       # The processes, which had it open, ended.
     assert run.returncode == 128 + number
-    assert err == "converse-tori: interrupted; nothing is proved\n" and "THEOREM" not in out
-    assert {each.name for each in tmp_path.iterdir()} == {"range.in", "pipe"}
+    assert err.startswith("converse-tori: interrupted; nothing is proved; ") and one_line(err)
+    assert "range.torus.found has the torus that was found" in err and "THEOREM" not in out
+    assert {each.name for each in tmp_path.iterdir()} == {"range.in", "pipe", "range.torus.found"}
+    claim = check.read(tmp_path / "range.torus.found")
+    assert len(claim.pieces) == 2 and claim.pieces[0].low == -1
 
 
 @pytest.mark.slow
@@ -260,6 +264,42 @@ def test_a_process_that_dies_is_told(tmp_path):
                           "--jobs", "2"], text=True, capture_output=True, cwd=tmp_path, timeout=300)
     assert run.returncode == 2 and "THEOREM" not in run.stdout
     assert one_line(run.stderr) and "died, perhaps for lack of memory" in run.stderr
+
+
+def test_the_time_limit(run, tmp_path, monkeypatch):
+    """It ends the search, or the check; the torus that was found is there, and is a start."""
+    file, found = tmp_path / "golden.torus", tmp_path / "golden.torus.found"
+    given = "prove", K09, "--rotation", "golden", "-b", file
+    status, out, err = run(*given, "--time-limit", "0")
+    assert status == 1 and out.startswith("UNDECIDED: nothing is proved.") and not err
+    assert "\nTime limit the 0 seconds of the time limit are over; the next step was: " in out
+    assert not list(tmp_path.iterdir())
+
+    def late(words):
+        raise tori.TimeIsUp("the time is up")
+    with monkeypatch.context() as patch:
+        patch.setattr(check, "verify_torus", lambda claim, tell, jobs: late(""))
+        status, out, err = run(*given)
+    assert status == 1 and "\nTime limit the time is up\n" in out and not file.exists()
+    assert "Found %s has the torus that was" % found in flat(out) and check.read(found).pieces
+    status, out, err = run(*given)
+    assert (status, out) == (2, "") and one_line(err) and "golden.torus.found: exists" in err
+    assert run(*given, "-r", found)[0] == 0
+    assert [each.name for each in tmp_path.iterdir()] == [file.name]
+
+
+def test_a_step_that_takes_minutes_is_told_each_minute(monkeypatch, capsys):
+    monkeypatch.setattr(cli, "MINUTE", 0.05)
+    monkeypatch.setattr(cli, "LOOK_SECONDS", 0.01)
+    monkeypatch.setattr(cli, "QUIET_SECONDS", 0)
+    with cli._Steps() as steps:
+        steps("the first step")
+        time.sleep(0.3)
+        steps("the second step")
+    err = capsys.readouterr().err.splitlines()
+    assert err[:3] == ["converse-tori: the first step" + more for more in (
+        "", " (for 1 min)", " (for 2 min)")]
+    assert err[-1] == "converse-tori: the second step"
 
 
 def test_a_certificate_is_one_runs_alone(run, tmp_path):

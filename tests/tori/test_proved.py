@@ -12,6 +12,7 @@ from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
 from converse.storage.files import ConverseError
 from converse.tori import certificate, proved
+from converse.tori.effort import TimeIsUp
 from converse.tori.find import find
 from converse.tori.newton import default_frame
 from converse.tori.proved import NotProved, prove
@@ -65,6 +66,21 @@ def test_tori_are_proved(problem, rotation):
     assert bound <= float(said) <= 1.1 * bound
     assert "...." not in proof.report()
     assert ("\n                 = [0; " in proof.report()) == (rotation.dimension == 1)
+
+
+def test_the_time_limit(circle):
+    """It ends find() and prove() before the next step; what was found is told before."""
+    for call in (lambda: find(standard("0.8"), GOLDEN, time_limit=0),
+                 lambda: prove(standard("0.8"), GOLDEN, time_limit=0.0),
+                 lambda: prove(circle, time_limit=0, keep=kept.append)):
+        kept = []
+        with pytest.raises(TimeIsUp, match="^the 0 seconds of the time limit are over; the next"):
+            call()
+    assert kept == [certificate.text([circle])]
+    for call in (find, prove):
+        with pytest.raises(ValueError, match="time_limit is a number of seconds, not -1"):
+            call(standard("0.8"), GOLDEN, time_limit=-1)
+    assert prove(standard("0.8"), GOLDEN, time_limit=1e9)
 
 
 def test_what_is_proved_is_what_the_file_says(circle, tmp_path):
