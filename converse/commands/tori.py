@@ -166,8 +166,8 @@ def _left(options):
     """What the file of the torus that was found is good for, "" if there is none."""
     if getattr(options, "backup", None) is None or not os.path.exists(_found(options)):
         return ""
-    return "%s has the torus that was found; converse-check tries to verify it, and -r starts from " \
-        "it" % plain(_found(options))
+    return "%s has the torus that was found; converse-check tries to verify it, and -r starts " \
+        "from it" % plain(_found(options))
 
 
 def _rotation(options, potential, start):
