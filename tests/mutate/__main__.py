@@ -35,18 +35,22 @@ PATIENCE = 900                          # seconds, for the tests of one file
 # The files that are mutated: all of csrc, and these files of the folders of converse.  The files
 # that guess where to start are left out, because no proof rests on them.
 PYTHON = {"orbits": ("enclosure", "exponents"),
-          "check": ("field", "series", "tori", "torus_file"),
+          "check": ("claim", "cover", "criterion", "exact", "field", "links", "lockstep", "maps",
+                    "portrait", "proof_file", "series", "tori", "torus", "torus_file", "tree"),
           "tori": ("certificate", "field", "proved")}
 GUESSES = ("thesis/start.c", "loewner/start.c", "loewner/score.c",
            "model/stationary.c")
 
-# The tests that may notice, by what a file's name begins with; the likely one first.
+# The tests that may notice, by what a file's name begins with; the likely one first.  After a colon
+# stands which tests of a file, as pytest's -k takes it.
 NUMBERS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py",
            "test_bounds.py",
            "test_images.py", "test_search.py"]
 SHARP = ["test_loewner.py", "test_waves.py", "test_search.py"]
-TORI = ["test_certificate.py", "test_proved.py"]
-FINDERS = ["test_orbits.py", "test_orbits_fail.py", "test_proved.py"]
+TORI = ["test_certificate.py", "tori/test_proved.py"]
+FINDERS = ["test_orbits.py", "test_orbits_fail.py", "orbits/test_proved.py"]
+PARTS = ["test_parts.py", "test_part_shifts.py"]
+BOTH_PATHS = "test_check.py: both_paths or confirms or forged or minimizes"
 TESTS = {
     "arith/apm": NUMBERS, "arith/special": ["test_special.py", *NUMBERS],
     "arith/sine": ["test_loewner.py", "test_gappa.py", "test_waves.py"], "arith/lanes": SHARP,
@@ -63,9 +67,28 @@ TESTS = {
     "model": ["test_bounds.py", *SHARP], "search": ["test_search.py", *SHARP, "test_rigor.py"],
     "loewner/waves": ["test_waves.py", "test_margins.py", *SHARP],
     "loewner": [*SHARP, "test_margins.py"], "loewner/bound": [*SHARP, "test_turns.py"],
-    "orbits/enclosure": ["test_proved.py"],
-    "orbits/exponents": ["test_proved.py"], "orbits": FINDERS,
-    "check": ["test_tori_bounds.py", "test_tori.py"], "check/torus_file": ["test_tori.py"],
+    "orbits/enclosure": ["orbits/test_proved.py"],
+    "orbits/exponents": ["orbits/test_proved.py"], "orbits": FINDERS,
+    "check/field": ["test_tori_bounds.py", "test_tori.py"],
+    "check/series": ["test_tori_bounds.py", "test_tori.py"],
+    "check/tori": ["test_tori_bounds.py", "test_tori.py"], "check/torus_file": ["test_tori.py"],
+    "check/claim": ["test_check.py: numbers or cells or prisms_cover or boxes_cover or header",
+                    *PARTS, BOTH_PATHS],
+    "check/cover": ["test_parts.py: enough or centre or periods or reversal", "test_portrait.py"],
+    "check/criterion": ["test_check.py: pivot or at_once or prisms_cover or halve or weak",
+                        *PARTS, BOTH_PATHS],
+    "check/exact": ["check/test_exact.py", "test_check.py: exact or one_bound", BOTH_PATHS],
+    "check/links": PARTS,
+    "check/lockstep": ["test_check.py: lockstep or lanes or roundings or term or turns or sums or "
+                       "slopes or centres or cuts_are", *PARTS, BOTH_PATHS],
+    "check/maps": ["test_check.py: map or cells or proved_from or sign_changes or strips_below",
+                   "test_map_regions.py"],
+    "check/portrait": ["test_portrait.py"],
+    "check/proof_file": ["test_check.py: header or numbers or trees or theorem or potentials or "
+                         "versions or at_once", *PARTS],
+    "check/torus": ["test_check.py: bound_over or at_once", "check/test_exact.py: few_bits"],
+    "check/tree": ["test_check.py: trees or flipped or mirror or counts or symmetric or "
+                   "coefficients or halved", *PARTS],
     "tori": TORI, "tori/field": ["test_rotation.py", *TORI],
 }
 
@@ -208,8 +231,9 @@ class Base:
                 except Same:
                     return "the same program"
             for name in tests_of(place.name):
+                name, _, words = name.partition(": ")
                 file = next((ROOT / "tests").rglob(name))
-                why = failure(file, work)
+                why = failure(file, work, words)
                 if why is None:
                     continue
                 if not self.passes(file, why):
@@ -229,10 +253,11 @@ class Base:
 CRASH, ENDLESS = "a crash", "which has no end"
 
 
-def failure(test, work):
-    """The name of the first test that fails with what was built in work; CRASH, ENDLESS or None."""
+def failure(test, work, words=""):
+    """The name of the first test that fails with what was built in work, of those with the words;
+    CRASH, ENDLESS or None."""
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--no-header",
-               "--rootdir", str(ROOT), "-c", str(ROOT / "pyproject.toml"), str(test)]
+               "--rootdir", str(ROOT), "-c", str(ROOT / "pyproject.toml"), "-k", words, str(test)]
     csrc = work / "csrc"                # of a mutant of the core
     environment = {**os.environ, "PYTEST_ADDOPTS": "", "PYTHONPATH": str(work),
                    "PYTHONDONTWRITEBYTECODE": "1", "CONVERSE_CONSOLE": str(work / "console.so"),

@@ -2,6 +2,7 @@
 that matters is caught."""
 
 import random
+import re
 import runpy
 import subprocess
 
@@ -101,7 +102,12 @@ def test_a_fatal_mistake_is_caught(tmp_path, monkeypatch):
 
 
 def test_the_tests_that_are_named_exist():
-    names = {path.name for path in (ROOT / "tests").rglob("test_*.py")}
-    assert {name for tests in TOOL["TESTS"].values() for name in tests} <= names
+    """One file for each name, and in it a test for each word behind a colon."""
+    for named in {each for tests in TOOL["TESTS"].values() for each in tests}:
+        name, _, words = named.partition(": ")
+        path, = (ROOT / "tests").rglob(name)
+        tests = re.findall(r"(?m)^def (test_\w+)", path.read_text("utf-8"))
+        assert tests and all(any(word in test for test in tests)
+                             for word in words.split(" or ")), named
     assert all(any(map(name.startswith, TOOL["TESTS"])) for name in TOOL["sources"]()
                if TOOL["mutants"](name, TOOL["sources"]()[name].read_text("utf-8")))
