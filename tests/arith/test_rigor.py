@@ -13,6 +13,7 @@ import pytest
 
 import converse
 
+import kernels
 from kernels import build
 from moments import PATIENCE
 
@@ -270,6 +271,11 @@ except MemoryError:
     del hold[-20:]
 sys.exit(main(["--jobs", "1", "-r", backup]))
 """
+
+
+def test_a_guard_within_a_guard_leaves_the_other_armed():
+    STOP = 2                            # GUARD_STOP of guard.h
+    assert kernels.call("guards", [], 2, 1) == [STOP, STOP]
 
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs /proc")

@@ -2192,12 +2192,25 @@ def test_the_other_lanes_multiplier_rounds_where_the_lanes_meet(np):
 
 
 @pytest.mark.quick
+def test_a_wave_that_vanishes_in_the_middle_is_there(np, texts):
+    """Its parameter moves it, so no orbit goes on where it reaches beyond 1."""
+    text = with_parameters(with_tree(texts["trig278"], "P"), ("0", "0.3"), ("0", "0"), ("0", "0"))
+    cell, number = np.zeros((5, 1), np.int64), np.zeros(1, int)
+    fast = check.Lockstep([claim_of(with_field(text, "v0", "1 0.001"))])
+    prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
+                          np.array([0.9]))
+    assert all(prisms.follow()) and 1 < len(prisms.sites) < 100
+    assert max([site.reach[fast.shape.at[0]].max() for site in prisms.sites]) <= check.REACH_MAX
+
+
+@pytest.mark.quick
 def test_roundings_of_slopes_are_counted_at_every_site(np, texts, monkeypatch):
     """Not only where the lanes meet, which is left out here."""
     monkeypatch.setattr(check.Prisms, "add_ends", lambda prisms, sums, G, *_: setattr(
         sums, "ends", np.zeros((prisms.known, *G.shape[1:]))))
     cell, number = np.zeros((5, 1), np.int64), np.zeros(1, int)
-    text = with_field(with_field(with_tree(texts["trig278"], "P"), "v0", "1 0.001"), "v1", "1 0.001")
+    text = with_field(with_tree(texts["trig278"], "P"), "v0", "1 0.001")
+    text = with_field(text, "v1", "1 0.001")
     fast = check.Lockstep([claim_of(text)])
     prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
                           np.array([0.3]))

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <time.h>
 
+#include "arith/guard.h"
 #include "arith/sine.h"
 #include "arith/special.h"
 #include "console.h"
@@ -114,6 +115,39 @@ static int bounds(long dp, apm_t in[], apm_t out[])     /* doubles not above and
     for (int j = 0; j < 2 && status == APM_OK; j++)
         status = apm_set_d(out[j], apm_bound_d(in[0], directions[j]));
     return code_of(status);
+}
+
+static void ask_and_poll(void *stop)
+{
+    cv_stop_set(stop);
+    guard_poll();
+}
+
+typedef struct {
+    cv_stop *inner, *outer;
+    int ended;
+} nested;
+
+static void nest(void *data)
+{
+    nested *const n = data;
+
+    n->ended = guard_run(ask_and_poll, n->inner, n->inner);
+    ask_and_poll(n->outer);
+}
+
+/* How a guard within a guard ends where it is stopped, and then the other one. */
+static int guards(long dp, apm_t in[], apm_t out[])
+{
+    nested n = { cv_stop_new(), cv_stop_new(), -1 };
+
+    (void)dp;
+    (void)in;
+    apm_set_si(out[1], guard_run(nest, &n, n.outer), 0);
+    apm_set_si(out[0], n.ended, 0);
+    cv_stop_free(n.inner);
+    cv_stop_free(n.outer);
+    return CV_OK;
 }
 
 /* An operation of apm.h by its number, with a direction where it takes one. */
@@ -294,6 +328,7 @@ static const struct {
     { { "floor", 1, 1 }, integer_below },
     { { "scale", 2, 1 }, scale },
     { { "order", 1, 1 }, order },
+    { { "guards", 0, 2 }, guards },
     { { "bounds", 1, 2 }, bounds },
     { { "in_place", 4, 5 }, in_place },
     { { "double", 1, 1 }, as_double },
