@@ -17,6 +17,7 @@ ORBITS, STEPS = 80, 800                # of the map, that are drawn
 CURVE = 4000                            # points of a circle that is proved
 TURN = 2 * math.pi
 COLOUR = 0.50, 0.66, 0.83               # where no circle passes: the less is undecided, the fuller
+APART = 9                               # lines are drawn so many times narrower than columns
 SHADES = 8                              # of COLOUR, so that a file is small
 DPI = 130                               # of the orbits and circles in a file of vectors
 
@@ -28,25 +29,25 @@ def draw(portrait, path=None, tori=(), ax=None):
 
 
 def fill(axes, portrait, tori=()):
-    """Draws it into axes: y across and y' - y upwards."""
-    image, left, right = shares(portrait)
+    """Draws it into axes: y across and J upwards, both modulo 2 pi."""
+    image, left = shares(portrait)
     colours = np.empty((*image.shape, 4))
     colours[..., :3], colours[..., 3] = COLOUR, 1 - np.ceil(SHADES * image) / SHADES
-    axes.imshow(colours, origin="lower", extent=(left, right, -math.pi, math.pi), aspect="auto",
-                interpolation="none", zorder=0)
-    y, w = orbits(portrait.problem, left, right)
-    axes.plot(y, w, ",", color=plot.DARK, rasterized=True, zorder=1)
+    if not portrait.strip:              # nothing is proved between two lines
+        colours = np.repeat(colours, APART, axis=1)
+        colours[:, np.arange(colours.shape[1]) % APART != APART // 2, 3] = 0
+    for turn in range(math.floor(-left / TURN), math.ceil(1 - left / TURN)):
+        begin = left + turn * TURN
+        axes.imshow(colours, origin="lower", extent=(begin, begin + TURN, 0, TURN), aspect="auto",
+                    interpolation="none", zorder=0)
+    axes.plot(*orbits(portrait.problem), ",", color=plot.DARK, rasterized=True, zorder=1)
     for torus, colour in zip(tori, (plot.VERMILLION, plot.GREEN, plot.PURPLE, plot.ORANGE) * 9):
-        y, w = circle(torus.torus, portrait.problem)
-        axes.plot((y - left) % TURN + left, wrapped(w), ".", color=colour, markersize=1,
-                  rasterized=True, zorder=2)
+        axes.plot(*circle(torus.torus), ".", color=colour, markersize=1, rasterized=True, zorder=2)
         axes.plot([], [], color=colour, label=str(torus.rotation))
-    names = {0: "0", 2: r"$\pi$", -2: r"$-\pi$", 1: r"$\pi/2$", -1: r"$-\pi/2$"}
-    ticks = range(-4, 5)
     for axis in axes.xaxis, axes.yaxis:
-        axis.set_ticks([m * math.pi / 2 for m in ticks],
-                       [names.get(m, r"$%g\pi$" % (m / 2)) for m in ticks])
-    axes.set(xlim=(left, right), ylim=(-math.pi, math.pi), xlabel="$y$", ylabel="$y' - y$",
+        axis.set_ticks([m * math.pi / 2 for m in range(5)],
+                       ["0", r"$\pi/2$", r"$\pi$", r"$3\pi/2$", r"$2\pi$"])
+    axes.set(xlim=(0, TURN), ylim=(0, TURN), xlabel=r"$y$  mod $2\pi$", ylabel=r"$J$  mod $2\pi$",
              title=title(portrait))
     if tori:
         axes.legend(loc="upper right", title="proved circles, rotation number")
@@ -62,38 +63,36 @@ def title(portrait):
         "phase space" if portrait.strip else "their successors")
 
 
-def wrapped(w):
-    return (w + math.pi) % TURN - math.pi
-
-
 def force(problem, y):
     """V'(y) in the middle of the patch."""
     return -sum(float(p) * k * np.cos(k * y + math.pi * float(phase))
                 for (k, _, phase), p in zip(problem.waves, problem.amplitude))
 
 
-def orbits(problem, left, right):
-    """Points (x_0, x_1 - x_0) of orbits, evenly spread at first: arrays."""
+def orbits(problem):
+    """Points (y, J), modulo 2 pi, of orbits, evenly spread at first: arrays."""
     at = (np.arange(ORBITS)[:, None] + 0.5) * [0.7548776662466927, 0.5698402909980532] % 1
-    y, w = left + (right - left) * at[:, 0], math.pi * (2 * at[:, 1] - 1)
+    y, J = TURN * at.T
     found = []
     for _ in range(STEPS):
-        y = (y + w - left) % TURN + left
-        w = wrapped(w - force(problem, y))
-        found.append((y, w))
+        J = (J - force(problem, y)) % TURN
+        y = (y + J) % TURN
+        found.append((y, J))
     return np.concatenate(found, axis=1)
 
 
-def circle(torus, problem):
-    """Points (x_0, x_1 - x_0) of an invariant circle and of its image by the reversal of time."""
+def circle(torus):
+    """Points (y, J), modulo 2 pi, of an invariant circle and of its image by the reversal of time,
+    (y, -J')."""
     theta = np.linspace(0, TURN, CURVE, endpoint=False)[:, None]
-    y, w = torus.x(theta)[:, 0], torus.J(theta + TURN * torus.rotation.floats[0])[:, 0]
-    return np.concatenate([y, y]), np.concatenate([w, -force(problem, y) - w])
+    y, J, after = torus.x(theta)[:, 0], torus.J(theta)[:, 0], torus.J(
+        theta + TURN * torus.rotation.floats[0])[:, 0]
+    return np.concatenate([y, y]) % TURN, np.concatenate([J, -after]) % TURN
 
 
 def shares(portrait):
     """The share that is undecided of each column, from the left, and of each of ROWS intervals of
-    x_1 - x_0 from -pi to pi: an array; and where the columns begin and end."""
+    J from 0 to 2 pi: an array; and where the columns begin, which are 2 pi wide together."""
     stars = portrait.stars
     half = math.pi / len(stars) * portrait.turns / 2
     image = np.ones((ROWS, len(stars) * 2 // portrait.turns))
@@ -105,11 +104,12 @@ def shares(portrait):
             if shift:                   # the mirror image
                 image[:, shift - 1 - at] = image[::-1, shift + at]
     left -= math.pi if shift else 0
-    return image, left, left + TURN
+    return image, left
 
 
 def column(portrait, xstar):
-    """The shares that are undecided in one column."""
+    """The shares that are undecided in one column: of prisms of points (y, y' - y), where J = y' -
+    y + V'(y), and of their images by the reversal of time, (y, -J')."""
     step = TURN / ROWS / FINER
     ends, weights = [], []
     k, _, _ = portrait.problem.waves[0]
@@ -124,13 +124,14 @@ def column(portrait, xstar):
             if portrait.strip:
                 y += math.asin(t * k * float(portrait.strip)) / k
             half *= math.pi / 2 ** cuts[0]
-            for middle in w, -force(portrait.problem, y) - w:
+            for middle in w + force(portrait.problem, y), -w:
                 ends.append((middle - half, middle + half))
                 weights.append(0.5 ** cuts[3])
     fine = np.zeros(ROWS * FINER + 1)
     if ends:
-        low, high = np.rint((np.array(ends).T + math.pi) / step).astype(int)
-        for turn in range(-3, 4):       # each is less than half a turn high
+        low, high = np.rint(np.array(ends).T / step).astype(int)
+        first, last = low.min() // (ROWS * FINER), high.max() // (ROWS * FINER)
+        for turn in range(-last, 1 - first):
             for at, sign in (low, 1), (high, -1):
                 np.add.at(fine, np.clip(at + turn * ROWS * FINER, 0, ROWS * FINER),
                           sign * np.array(weights))

@@ -244,7 +244,8 @@ class Portrait(Kept):
             rounded_text(100 * self.undecided, 3, up=True))
 
     def plot(self, ax: Any = None, tori: Sequence[Any] = ()) -> Any:
-        """Draws the portrait: y to the right, y' - y upwards, in radians.
+        """Draws the portrait: y to the right and J upwards, modulo 2 pi, as the portraits of
+        orbits (SymplecticMap.portrait).
 
         Parameters
         ----------

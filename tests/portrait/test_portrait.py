@@ -333,3 +333,33 @@ def test_what_was_only_read_is_told_in_the_headline(strips, tmp_path):
     again.save(other)
     with pytest.raises(ConverseError, match="is of another program, 4.0; continue it with that"):
         portray(path=other, resume=True)
+
+
+def test_the_figure_has_the_coordinates_of_the_portraits_of_orbits(strips):
+    """(y, J): the golden circle and its image pass where something is undecided, not so the
+    points of the island about (pi/2, 0), nor the golden circle drawn at y' - y."""
+    from converse.draw.portrait_figure import ROWS, TURN, circle, force, shares
+
+    image, left = shares(strips[0])
+    torus = tori.find(strips[0].problem, "golden")
+
+    def undecided(y, J):
+        """The most that is undecided within a hundredth of a turn above and below."""
+        at = np.floor((np.asarray(y) - left) % TURN / TURN * image.shape[1]).astype(int)
+        rows = np.floor(np.asarray(J) % TURN / TURN * ROWS).astype(int)
+        return np.max([image[(rows + move) % ROWS, at] for move in range(-7, 8)], axis=0)
+
+    y, J = circle(torus)
+    assert (undecided(y, J) > 0).all()
+    assert (undecided(y, J - force(strips[0].problem, y)) == 0).any()
+    assert (undecided([math.pi / 2, math.pi / 2 - 0.3, math.pi / 2], [0, 0, 0.4]) == 0).all()
+
+
+def test_lines_are_drawn_as_lines(strips):
+    from matplotlib.figure import Figure
+
+    lines = replace(strips[0], strip=Fraction(0))
+    for portrait, most in ((lines, 0.12), (strips[0], 1)):
+        axes = portrait.plot(Figure().subplots())
+        alpha = axes.images[0].get_array()[..., 3]
+        assert most / 9 < (alpha > 0).mean() < most
