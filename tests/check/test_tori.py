@@ -1267,6 +1267,7 @@ def test_both_reasons_are_told_if_a_torus_that_is_nearly_odd_fails(run, monkeypa
     assert run(sealed(text.replace("1 0 1 -", "1 0 0 -")))[2].endswith("confirmed: it is odd\n")
 
 
+@pytest.mark.slow
 def test_a_torus_that_is_nearly_odd(run, tmp_path):
     """Parts of 8e-6 that are not odd are left out first, and then are not."""
     torus = prove(Problem(SymplecticMap([(1, 0), (0, 1), (1, 1)], ["0.1", "0.1", "0.000001"])),

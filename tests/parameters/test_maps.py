@@ -270,6 +270,7 @@ class Unreliable(concurrent.futures.ThreadPoolExecutor):
         return super().submit(dies, *arguments)
 
 
+@pytest.mark.slow
 def test_workers_that_die(coarse, tmp_path):
     with Unreliable(3) as pool:
         assert parameters.explore("c=0", "1.3", path=tmp_path / "map.json", executor=pool).complete
