@@ -37,6 +37,20 @@ def product(steps):
         steps = np.concatenate([pairs, steps[-1:]]) if len(steps) % 2 else pairs
 
 
+def log_weak_excess(bends):
+    """log (rho - 2) of an orbit of one angle, the bends h = -eps V'' of whose points are so small
+    that q times the sum of |h| is below 1.  The Hessian's 2 + h has no digits of h; here DF - 1 is
+    kept, and (1 + b)(1 + a) = 1 + (a + b + b a)."""
+    steps = np.zeros((len(bends), 2, 2))
+    steps[:, 0, 0] = steps[:, 1, 0] = bends
+    steps[:, 0, 1] = 1
+    while len(steps) > 1:
+        first, then = steps[:-1:2], steps[1::2]
+        pairs = first[:len(then)] + then + then @ first[:len(then)]
+        steps = np.concatenate([pairs, steps[-1:]]) if len(steps) % 2 else pairs
+    return log_of(np.trace(steps[0]))
+
+
 def log_of(x):
     """The complex logarithm of a real number; -inf of 0."""
     with np.errstate(divide="ignore"):

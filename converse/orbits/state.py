@@ -14,7 +14,8 @@ from ..storage.files import ConverseError
 from .limits import (EIGENVALUE_ROUNDING, EIGENVALUE_STEP, MAX_DISPLACEMENT, MAX_PIVOTS, MAX_Q,
                      MAX_SHADOW, NULL_EIGENVALUE, SHADOW_REACH)
 from .potential import Potential, address, done, finite, known, whole
-from .stability import Monodromy, beyond, log_excesses, log_multipliers, product
+from .stability import (Monodromy, beyond, log_excesses, log_multipliers, log_weak_excess,
+                        product)
 
 if TYPE_CHECKING:
     from .minimax import Pair
@@ -318,6 +319,9 @@ class PeriodicOrbit:
     @cached_property
     def _log_excesses(self) -> np.ndarray:
         """log (rho - 2) of the stability indices rho: complex array (n,)."""
+        bends = -self.eps * self._local[2]
+        if self.potential.n == 1 and self.q * float(np.abs(bends).sum()) < 1:
+            return _fixed(np.array([log_weak_excess(bends[:, 0, 0])]))
         log = ffi.new("double *")
         negative = lib.cv_determinant(self.potential.n, self.q,
                                       address(self.blocks, "double(*)[3]"), log)
