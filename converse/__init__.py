@@ -10,7 +10,7 @@ from .version import __version__
 
 TYPE_CHECKING = False           # as in typing, whose import would delay the handlers of signals
 if TYPE_CHECKING:
-    from . import check, orbits, parameters, tori
+    from . import check, diagram, orbits, tori
     from .model.inputs import read_input
     from .model.map import FourierMap, FroeschleMap, MuldoonMap, StandardMap, SymplecticMap
     from .model.problem import InputError, Problem
@@ -28,11 +28,11 @@ _HOMES = {"ConverseError": "storage.files", "Counts": "prover.native",
           "Settings": "prover.settings", "StandardMap": "model.map", "SymplecticMap": "model.map",
           "Tree": "prover.proof", "portray": "prover.portrait", "prove": "prover.run",
           "read_input": "model.inputs"}
-_ROOMS = "check", "orbits", "parameters", "tori"
+_ROOMS = "check", "diagram", "orbits", "tori"
 
 __all__ = ["ConverseError", "Counts", "FourierMap", "FroeschleMap", "InputError", "MuldoonMap",
            "Portrait", "Problem", "Proof", "Settings", "StandardMap", "SymplecticMap", "Tree",
-           "__version__", "check", "orbits", "parameters", "portray", "prove", "read_input", "tori"]
+           "__version__", "check", "diagram", "orbits", "portray", "prove", "read_input", "tori"]
 
 
 def __getattr__(name):

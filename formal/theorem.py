@@ -386,9 +386,9 @@ def main():
         sys.exit("theorem.py: --parts: less than one")
     try:
         claim = check.read(options.file)
-        if isinstance(claim, check.ParameterMap):
-            raise check.Unusable("is a map; a theorem is made from a proof file or a certificate "
-                                 "of existence")
+        if isinstance(claim, check.Diagram):
+            raise check.Unusable("is a diagram; a theorem is made from a proof file or a "
+                                 "certificate of existence")
         if isinstance(claim, check.TorusClaim):
             if options.numbers or options.parts:
                 raise check.Unusable("is a certificate of existence, whose theorem is one file "

@@ -427,7 +427,7 @@ let magic = "converse proof "
 let read path =
   let data = load path in
   if String.starts_with ~prefix:"{" data then
-    refuse "is a map, or no proof file; converse-check verifies maps";
+    refuse "is not a proof file; converse-check verifies diagrams";
   if not (String.starts_with ~prefix:magic data) then refuse "is not a proof file";
   let start = String.length magic in
   let first = match String.index_from_opt data start '\n' with

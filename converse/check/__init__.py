@@ -1,4 +1,4 @@
-"""The checker: it verifies the theorems of proof files, maps, portraits and certificates of
+"""The checker: it verifies the theorems of proof files, diagrams, portraits and certificates of
 existence, independently of the program that wrote them.
 
 It shares no mathematics with the prover and imports nothing of the rest of converse, which uses of
@@ -8,6 +8,7 @@ a table of the modules.
 """
 
 from .command import main, parser
+from .diagram import Diagram, Family, box_words, overlap, read_diagram, solution, union
 from .failures import Failure, NotConfirmed, Rejected, Unusable
 from .limits import INTERRUPTED, NOT_CONFIRMED, PART, REJECTED, SPOT_CHECK, UNUSABLE, VERIFIED
 from .progress import shown
@@ -15,25 +16,22 @@ from .run import Result, load, read, verify
 from .torus_file import TorusClaim, read_torus
 from .tree import check_tree
 from .version import __version__
-from .words import decimal_text
+from .words import decimal_text, exact_text
 
 TYPE_CHECKING = False                   # as in typing
 if TYPE_CHECKING:
-    from .maps import ParameterMap
     from .tori import Verified, verify_torus
 
-__all__ = ["Failure", "INTERRUPTED", "NOT_CONFIRMED", "NotConfirmed", "PART", "ParameterMap",
+__all__ = ["Diagram", "Failure", "Family", "INTERRUPTED", "NOT_CONFIRMED", "NotConfirmed", "PART",
            "REJECTED", "Rejected", "Result", "SPOT_CHECK", "TorusClaim", "UNUSABLE", "Unusable",
-           "VERIFIED", "Verified", "__version__", "check_tree", "decimal_text", "load", "main",
-           "parser", "read", "read_torus", "shown", "verify", "verify_torus"]
+           "VERIFIED", "Verified", "__version__", "box_words", "check_tree", "decimal_text",
+           "exact_text", "load", "main", "overlap", "parser", "read", "read_diagram", "read_torus",
+           "shown", "solution", "union", "verify", "verify_torus"]
 
 
 def __getattr__(name):
-    """Imports what only maps and certificates of existence need when it is asked for."""
-    if name == "ParameterMap":
-        from . import maps as home
-    elif name in ("Verified", "verify_torus"):
-        from . import tori as home
-    else:
-        raise AttributeError("module %r has no attribute %r" % (__name__, name))
-    return getattr(home, name)
+    """Imports what only certificates of existence need when it is asked for."""
+    if name in ("Verified", "verify_torus"):
+        from . import tori
+        return getattr(tori, name)
+    raise AttributeError("module %r has no attribute %r" % (__name__, name))

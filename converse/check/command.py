@@ -38,8 +38,8 @@ def shard(text):
 def parser():
     p = Parser(prog="converse-check", allow_abbrev=False,
                formatter_class=argparse.RawDescriptionHelpFormatter, description=(
-        "Verifies the theorem of a proof file, all those of a map, or that of a portrait or a\n"
-        "certificate of existence, independently of the program that wrote them."),
+        "Verifies the theorem of a proof file, a diagram, a portrait or a certificate of\n"
+        "existence, independently of the program that wrote them."),
         epilog="""example:
   converse --method loewner --together trig148.in -b trig148.proof
   converse-check trig148.proof
@@ -52,7 +52,7 @@ exit status:
   0    verified
   1    rejected: the file is wrong (altered, unfinished, with undecided or missing
        parts, wrong counts, a skipped part without its mirror image), or it is a
-       map or portrait of which nothing is proved
+       diagram or portrait of which nothing is proved
   2    bad usage, or a file that cannot be read
   3    verified in part: for successors in a part of the torus only, or a shard
   4    a spot check in which nothing failed: NOT a verification
@@ -60,7 +60,7 @@ exit status:
   130  interrupted (129, 143: by SIGHUP, SIGTERM)
   141  the reader of the output has closed the pipe, as head does""")
     p.add_argument("file", help=(
-        "a finished proof file, a map, a portrait or a certificate of existence, perhaps "
+        "a finished proof file, a diagram, a portrait or a certificate of existence, perhaps "
         "compressed by gzip"))
     p.add_argument("--jobs", type=positive_int, default=1, metavar="N",
                    help="processes (default 1)")

@@ -18,8 +18,7 @@ BOUND_BITS = 256        # of the bound B; the thousands of bits of narrow cells 
 class Criterion:
     """Everything that does not change from leaf to leaf."""
 
-    def __init__(self, claim, bound=None):
-        """bound: of B, exact, if it is known."""
+    def __init__(self, claim):
         parts = [part for part, _ in trees(claim)]
         widths = [x for part in parts for x in part.half if x] + [
             abs(g) for wave in claim.examined for g in wave.parts if g]
@@ -37,17 +36,14 @@ class Criterion:
         self.take(claim)
         # The ends of the parameters: B of a cell is at most the interpolation of B at the ends.  An
         # end is off by less than a unit for each wave, and the eigenvalue by less than stiffness.
-        if bound is not None:
-            self.B_at = [math.ceil(bound * one)]
-        else:
-            corners = [tuple([math.floor(wave.at(t) * coarse.one) for wave in waves])
-                       for t in itertools.product((-1, 1), repeat=claim.parameters)]
-            apart = [(x,) for x in corners] if any(set("234") & set(part.tree) for part in parts) \
-                else [tuple(corners)]
-            units = in_units(coarse, waves)
-            found = {ends: torus_bound(coarse, units, ends) + stiffness(units) << bits - coarse.bits
-                     for ends in set(apart)}
-            self.B_at = [found[ends] for ends in apart]
+        corners = [tuple([math.floor(wave.at(t) * coarse.one) for wave in waves])
+                   for t in itertools.product((-1, 1), repeat=claim.parameters)]
+        apart = [(x,) for x in corners] if any(set("234") & set(part.tree) for part in parts) \
+            else [tuple(corners)]
+        units = in_units(coarse, waves)
+        found = {ends: torus_bound(coarse, units, ends) + stiffness(units) << bits - coarse.bits
+                 for ends in set(apart)}
+        self.B_at = [found[ends] for ends in apart]
         self.B = max(self.B_at)
         if self.B <= 2 * one:
             # The tails of step (C2) must be square-summable, l < 1, which needs B > 2.

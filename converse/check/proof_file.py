@@ -17,15 +17,15 @@ IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "R
 OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "parameter", "comment"}
 FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame", "alone",
           "odd about"}
-REPEATED = {"wave", "parameter", "comment"}
+REPEATED = {"wave", "parameter", "comment", "seen", "search"}
 MAGIC, VERSION = b"converse proof ", b"6"       # the first line
 
 
 def read_proof(data):
     """The claim of a proof file, if it is whole and has the checksum that it says."""
     if not data.startswith(MAGIC):
-        raise Unusable("is a map, a portrait or a certificate of existence, which converse-check "
-                       "verifies")
+        raise Unusable("is a diagram, a portrait or a certificate of existence, which "
+                       "converse-check verifies")
     head, tree, sha256 = sealed(data, MAGIC + VERSION, "proof file", b"tree:\n", "is no tree")
     return parse(bytes(head), bytes(tree).decode("latin-1"), sha256)
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from .claim import Claim
 from .criterion import check_at_once
-from .failures import NotConfirmed, Unusable
+from .diagram import DIAGRAM_LINE, Diagram, drawn, proofs_of, read_diagram
+from .failures import NotConfirmed, Unusable, named
 from .limits import MAX_BYTES, PART, SPOT_CHECK, VERIFIED
 from .links import check_links
 from .lockstep import make_lockstep
@@ -25,15 +26,15 @@ from .workers import Problems, check_all
 
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
 FAST_CHUNK = 1 << 10, 1 << 14           # least (a batch of Lockstep) and most of the fast path
-PORTRAIT_MAGIC = PORTRAIT[:len(MAGIC)]
+DIAGRAM_MAGIC, PORTRAIT_MAGIC = [line[:len(MAGIC)] for line in (DIAGRAM_LINE, PORTRAIT)]
 VERDICTS = {VERIFIED: "verified", PART: "verified in part", SPOT_CHECK: "spot check"}
 
 
 @dataclass(frozen=True)
 class Result:
     """What came of a check in which nothing failed: true only if the whole claim is verified and
-    its region is the whole torus, or all that a map or a portrait says is proved.  (All else is an
-    exception.)
+    its region is the whole torus, or all that a diagram or a portrait says is proved.  (All else is
+    an exception.)
 
     Attributes
     ----------
@@ -57,7 +58,7 @@ class Result:
 
 
 def load(path):
-    """The bytes of a proof file, a map, a portrait or a certificate of existence, uncompressed.
+    """The bytes of a proof file, a diagram, a portrait or a certificate of existence, uncompressed.
 
     Parameters
     ----------
@@ -74,8 +75,8 @@ def load(path):
             packed = file.peek(2)[:2] == b"\x1f\x8b"
             stream = gzip.GzipFile(fileobj=file) if packed else file
             data = bytearray(stream.read(len(MAGIC)))
-            if data not in (MAGIC, TORUS_MAGIC, PORTRAIT_MAGIC) and not data.startswith(b"{"):
-                raise Unusable("is not a proof file, a map, a portrait or a certificate")
+            if data not in (MAGIC, TORUS_MAGIC, PORTRAIT_MAGIC, DIAGRAM_MAGIC):
+                raise Unusable("is not a proof file, a diagram, a portrait or a certificate")
             while (more := stream.read(1 << 20)) and len(data) <= MAX_BYTES:
                 data += more
     except (EOFError, zlib.error, gzip.BadGzipFile):
@@ -88,7 +89,8 @@ def load(path):
 
 
 def read(path):
-    """Reads a proof file, a map, a portrait or a certificate of existence.  Nothing is verified.
+    """Reads a proof file, a diagram, a portrait or a certificate of existence.  Nothing is
+    verified.
 
     Parameters
     ----------
@@ -97,7 +99,7 @@ def read(path):
 
     Returns
     -------
-    Claim, ParameterMap, Portrait or TorusClaim
+    Claim, Diagram, Portrait or TorusClaim
         The content of the file, exact.
 
     Raises
@@ -110,14 +112,13 @@ def read(path):
         return read_torus(data)
     if data.startswith(PORTRAIT_MAGIC):
         return read_portrait(data)
-    if data.startswith(b"{"):
-        from .maps import read_map  # only here and below, as json would delay all other checks
-        return read_map(data)
+    if data.startswith(DIAGRAM_MAGIC):
+        return read_diagram(data)
     return read_proof(data)
 
 
 def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=None):
-    """Verifies a proof file, a map, a portrait or a certificate of existence.
+    """Verifies a proof file, a diagram, a portrait or a certificate of existence.
 
     Parameters
     ----------
@@ -163,9 +164,7 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
         if sample is not None or state is not None:
             raise Unusable("a certificate of existence is verified as a whole: no --sample, no "
                            "--state")
-        from .tori import verify_torus  # here, as its modules would delay all other checks
-        with Bar((file,) if bar else (), 1) as progress:
-            lines, facts = verify_torus(file, progress.tell, jobs)
+        (lines, facts), = check_tori([file], jobs, bar)
         return verdict(VERIFIED, lines, file, len(facts), len(file.pieces), facts)
     problems, theorem_of = problems_of(file)
     try:
@@ -184,6 +183,12 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
     status, lines = report(problems.claims, theorem,
                            problems.criterion(0) if theorem_of is claimed else None,
                            done.confirmed, done.pieces, done.doubles)
+    confirmed = done.confirmed
+    if isinstance(file, Diagram) and sample is None and done.shard[1] == 1:
+        tori = [member.claim for member in file.tori]
+        confirmed += sum([len(facts) for _, facts in check_tori(tori, jobs, bar)])
+        due += sum([len(claim.pieces) for claim in tori])
+        lines += ["Certificates of tori checked : %d" % len(tori)]
     if sample is not None:
         status, due = SPOT_CHECK, len(chosen)
         lines[:1] = ["Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
@@ -198,7 +203,7 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
                                     % (earlier, total, done.earlier_runs))
     if earlier:
         lines += ["Of these, by %s whose state was believed : %d" % (done.earlier_runs, earlier)]
-    return verdict(status, lines, file, done.confirmed, due)
+    return verdict(status, lines, file, confirmed, due)
 
 
 def verdict(status, lines, file, confirmed, due, facts=()):
@@ -213,19 +218,35 @@ def verdict(status, lines, file, confirmed, due, facts=()):
 
 
 def problems_of(file):
-    """The Problems of a proof file, a map or a portrait, and the function that words its theorem.
-    Everything except the leaves has been checked."""
+    """The Problems of a proof file, a diagram or a portrait, and the function that words its
+    theorem.  Everything except the leaves, and the tori of a diagram, has been checked."""
     if isinstance(file, Portrait):
-        return Problems(file.claims), portrayed
-    if not isinstance(file, Claim):
-        from .maps import check_map, mapped
-        return Problems(file.claims, check_map(file)), mapped
-    check_tree(file)
-    check_mirror_images(file)
-    problems = Problems((file, *file.parts))
-    check_links(file, problems.criterion(0))
-    check_at_once(problems.criterion(0))
-    return problems, claimed
+        return Problems(file.claims[:1]), portrayed
+    if isinstance(file, Claim):
+        check_tree(file)
+        proofs, words = [file], claimed
+    else:                               # whose trees were checked when it was read
+        proofs, words = proofs_of(file), drawn
+    problems = Problems(proofs)
+    for proof, head in zip(proofs, sorted(set(problems.heads))):
+        check_mirror_images(proof)
+        check_links(proof, problems.criterion(head))
+        with named(proof.where):
+            check_at_once(problems.criterion(head))
+    return problems, words
+
+
+def check_tori(claims, jobs, bar):
+    """What verify_torus returns of each certificate of existence."""
+    if not claims:
+        return []
+    from .tori import verify_torus  # here, as its modules would delay all other checks
+    with Bar(claims if bar else (), len(claims)) as progress:
+        found = []
+        for n, claim in enumerate(claims, 1):
+            with named("torus %d" % n if len(claims) > 1 else ""):
+                found.append(verify_torus(claim, progress.tell, jobs))
+    return found
 
 
 def check_leaves(problems, chosen, done, jobs, bar):

@@ -36,6 +36,7 @@ FEW_MODES = 1 << 14                     # Any torus may need so many. They take 
 INVERSE_MODES = 64                      # Modes of L^-1 per mode of u. Sparse tori needed 17.
 TRIES = 6                               # The number of modes is raised at most so often.
 POWERS = "", "t", "t^2", "t^3"
+OMEGA_PLACES = 12                             # of the components of a rotation vector
 FAR = "the torus is too far from the straight one"
 
 
@@ -819,13 +820,24 @@ def scientific(x, up=True):
     return "%d.%de%d" % (digits // 10, digits % 10, exponent)
 
 
+def rotation_text(claim):
+    """The rotation vector of a TorusClaim: its components in t and their first decimals."""
+    field = Field(claim.polynomial, *claim.root)
+    omega = ", ".join(["%s = %s..." % (sum_text(element, POWERS),
+                                       decimal_text(field.truncated(element, OMEGA_PLACES)))
+                       for element in claim.rotation])
+    return "omega = " + ("(%s)" % omega if claim.dimension == 2 else omega)
+
+
+def root_text(claim):
+    """The field of the rotation vector, in words."""
+    return "t is the root of %s between %s and %s" % (
+        sum_text(map(Fraction, claim.polynomial), POWERS), *map(exact_text, claim.root))
+
+
 def existence_report(claim, setting, found):
     """The theorem and what it rests on."""
     n, worst = claim.dimension, max(found, key=lambda x: x.residual / x.needed)
-    places = 12
-    omega = ", ".join(["%s = %s..." % (
-        sum_text(element, POWERS), decimal_text(setting.field.truncated(element, places)))
-        for element in claim.rotation])
     ranged = claim.pieces[0].low != claim.pieces[-1].high
     lines = ["Verified :", *map_lines(claim.waves, [("s", Fraction(-1), Fraction(1))], n),
              "has%s an invariant %s" % (" for all -1 <= s <= 1" * ranged,
@@ -833,9 +845,7 @@ def existence_report(claim, setting, found):
              "(J = P + S'(y) over %s, P constant, S periodic and real analytic), on which"
              % ("both angles" if n == 2 else "the angle"),
              "it is conjugate to the rotation by 2 pi omega,",
-             "omega = (%s)" % omega if n == 2 else "omega = " + omega,
-             "where t is the root of %s between %s and %s" % (
-                 sum_text(map(Fraction, claim.polynomial), POWERS), *map(exact_text, claim.root))]
+             rotation_text(claim), "where " + root_text(claim)]
     return lines + [
         "It is within %s of the file's: y = theta + u(theta)."
         % scientific(max(piece.distance for piece in found)), "",

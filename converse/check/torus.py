@@ -54,14 +54,14 @@ def cell_bound(fixed, waves, amplitudes, sides, y, w):
     return corners + bend + slack, eigenvalue((0,) * len(sides)) + slack
 
 
-def torus_bound(fixed, waves, corners, most=None):
+def torus_bound(fixed, waves, corners):
     """An upper bound B of the largest eigenvalue of beta over the torus and the parameters between
     these corners, each a tuple of amplitudes.
 
     beta(x) is affine in the parameters and its largest eigenvalue convex: for each x the maximum
     is at one of the corners.  At each, branch and bound over cells that cover the torus,
-    until the worst cell is within 2^-20 (relative to the parameters) of a value taken, or the
-    number of cells reaches most, which makes the bound a little less sharp.
+    until the worst cell is within 2^-20 (relative to the parameters) of a value taken, or there are
+    MAX_CELLS, which makes the bound a little less sharp.
 
     If all k are multiples of q, a primitive vector, then beta depends on q.y alone, and has all its
     values on a piece of an axis, |y| <= pi/|q0| or pi/|q1|.
@@ -73,7 +73,7 @@ def torus_bound(fixed, waves, corners, most=None):
     of_axis = [[n for n, wave in enumerate(waves) if wave[axis]] for axis in (0, 1)]
     if all(of_axis) and not set(of_axis[0]) & set(of_axis[1]):
         return max([torus_bound(fixed, [waves[n] for n in part],
-                                [tuple([p[n] for n in part]) for p in corners], most)
+                                [tuple([p[n] for n in part]) for p in corners])
                     for part in of_axis])
     corners = sorted(set(corners))
     sides, width = [(1, 0), (0, 1)], fixed.pi
@@ -92,7 +92,7 @@ def torus_bound(fixed, waves, corners, most=None):
 
     for p in corners:
         push(p, (0, 0), width + 3)          # pi is off by less than 2 units, width by 3
-    while -heap[0][0] > taken + tolerance and next(order) < (most or MAX_CELLS):
+    while -heap[0][0] > taken + tolerance and next(order) < MAX_CELLS:
         _, _, p, y, w = heapq.heappop(heap)
         w = w + 1 >> 1
         for d in itertools.product((-w, w), repeat=len(sides)):

@@ -15,21 +15,26 @@ from .tree import leaves
 
 
 class Problems:
-    """The claims of a file: of a proof and its parts, of a map's cells with a bound of B for each,
-    or of a portrait's columns; and their fast path, if there is one."""
+    """The claims of a file: of its proofs and their parts, or of a portrait's columns; and their
+    fast path, if there is one."""
 
-    def __init__(self, claims, bounds=None):
-        self.claims, self.bounds, self.fast, self.known = claims, bounds, None, {}
+    def __init__(self, proofs):
+        """proofs: Claims, each followed by its parts."""
+        self.claims, self.heads = [], []    # heads: by claim, the number of its proof's first
+        for proof in proofs:
+            self.heads += [len(self.claims)] * (1 + len(proof.parts))
+            self.claims += proof, *proof.parts
+        self.fast, self.known = None, {}    # known: by claim, its Criterion
         self.bent = {}                      # by claim: no eigenvalue of V'' is above it
 
     def criterion(self, n):
         if n not in self.known:
-            claim = self.claims[n]
-            if n and self.bounds is None:
-                self.known[n] = self.criterion(0).of_part(claim)
+            claim, head = self.claims[n], self.heads[n]
+            if n != head:
+                self.known[n] = self.criterion(head).of_part(claim)
             else:
                 with named(claim.where):
-                    self.known[n] = Criterion(claim, self.bounds and self.bounds[n])
+                    self.known[n] = Criterion(claim)
         return self.known[n]
 
     def excluded(self, leaf):

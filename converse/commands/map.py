@@ -1,104 +1,124 @@
-"""The command: converse-map [--plane b=0] MAP."""
+"""The command: converse-map INPUT -b FILE."""
 
 import argparse
-import math
 import os
+import re
 import sys
 
-from ..model.exact import decimal_text
-from ..parameters.map import PROVED, ParameterMap
-from ..parameters.region import REGIONS
-from ..storage.files import ConverseError, plain
+from ..diagram import Diagram
+from ..model.exact import exact
+from ..storage import files
+from ..storage.files import ConverseError
 from ..version import __version__
-from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
-                     ending, executor_of, number, say)
+from .common import (MAP, SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
+                     ending, executor_of, read_problem, say)
 
 COMMAND = "converse-map"
-DOWN_TO = "1.05"
+FIRST_WORDS = "converse diagram "       # of the file of a diagram
+UNITS = {"": 1, "s": 1, "min": 60, "h": 3600}       # of a budget, in seconds
+BUDGET = re.compile(r"(.*?)\s*(|s|min|h)")
 ENDING = ending(
-    "converse-map --plane a=b --down-to 1.1 ab.json\n"
-    "converse-map -g ab.svg ab.json\n"
-    "converse-check ab.json",
-    "converse-check  verifies the map independently\n"
-    "converse        proves one patch of parameters, of any potential\n"
-    "converse-tori   proves tori, and writes the certificates of --tori", (
-        (0, "all is proved that was asked for"), (1, "some of it is not"),
-        (2, "bad usage, map or file"), (SIGNALS[0], SIGNALS[1] + ", the map saved")))
+    "converse-map two-harmonics.json -b two.map -g two.svg\n"
+    "converse-map -r two.map --budget 1h\n"
+    "converse-map two.map -g two.svg\n"
+    "converse-check two.map",
+    "converse-check  verifies the file independently\n"
+    "converse        proves that there are no tori, for one value or range\n"
+    "converse-tori   proves one torus, for one value or range", (
+        (0, "something is proved"), (1, "nothing is proved"),
+        (2, "bad usage, input or file"), (SIGNALS[0], SIGNALS[1] + ", what was proved is saved")))
 
 
-def _ratio(text):
-    ratio = number(text)
-    if not 1 < ratio <= 100:
-        raise argparse.ArgumentTypeError("'%.40s' is not a number above 1, at most 100, as 1.05 is"
+def _budget(text):
+    number, unit = BUDGET.fullmatch(text).groups()
+    try:
+        seconds = exact(number) * UNITS[unit]
+    except ValueError:
+        seconds = 0
+    if seconds <= 0:
+        raise argparse.ArgumentTypeError("'%.40s' is not a time above 0, such as 300, 10min or 2h"
                                          % text)
-    return ratio
+    return seconds
 
 
 def parser():
     p = Parser(prog=COMMAND, epilog=ENDING, description=(
-        "Proves for as many (a, b, c) of a plane as it can that the map  y' = y + J',  J' = J - "
-        "grad V(y),  V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1), has no invariant torus, and "
-        "keeps what is proved in MAP, a file that converse-check verifies.  Without --plane and -r "
-        "MAP is described, and drawn with -g."))
-    p.add_argument("map", metavar="MAP", help="a file, new unless it is restored; compressed if "
-                   "its name ends in .gz")
-    p.add_argument("--plane", choices=[*REGIONS], help="all directions of a plane, a, b, c >= 0")
-    p.add_argument("--down-to", type=_ratio, metavar="RATIO", help=(
-        "prove down to RATIO times the estimated frontier (default %s)" % DOWN_TO))
-    p.add_argument("-r", "--restore", action="store_true", help=(
-        "continue MAP in its plane; --down-to may have another value"))
-    p.add_argument("-g", "--graphics", metavar="FILE", help="draw the map: SVG, PNG or PDF by name")
-    p.add_argument("--tori", metavar="DIRECTORY", help="count the certificates of tori in "
-                   "DIRECTORY, of points of the plane; with -g, draw these points")
-    add_worker_options(p, "cells")
+        "Finds for which values of one or two parameters %s, is proved to have no invariant torus. "
+        " The input gives one or two parameters a range.  Between proved values nothing is proved."
+        % MAP))
+    p.add_argument("input", nargs="?", metavar="INPUT", help=(
+        "an input file; or a file of -b, which is described, and drawn with -g"))
+    p.add_argument("-b", "--backup", metavar="FILE", help=(
+        "keep what is proved in FILE, a new file, compressed if its name ends in .gz"))
+    p.add_argument("-r", "--restore", metavar="FILE", help=(
+        "continue the diagram in FILE, with a larger --budget"))
+    p.add_argument("--budget", type=_budget, metavar="TIME", help=(
+        "of the work of all runs on the diagram, in seconds, min or h of one core, about: it "
+        "stands for a number of points of orbits, so that the result is the same on each machine "
+        "(default: 5min)"))
+    p.add_argument("-g", "--graphics", metavar="FILE",
+                   help="draw the diagram: SVG, PNG or PDF by name")
+    add_worker_options(p, "parts of the range")
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 
 
-def progress_text(share, found):
-    """The progress line: the present step of the work, and how much of it is done."""
-    if found.estimated_all:
-        return "proving: %.1f%% of the area down to %s times the estimate, %d cells" % (
-            math.floor(1000 * share) / 10, decimal_text(found.down_to), found.count(PROVED))
-    return "estimating the frontier: %d of %d directions" % (
-        sum(map(len, found.estimate)),
-        len(found.estimate) * len(found.places()))
+def progress_text(diagram):
+    """The progress line: how much work is done."""
+    return "%d proved, %s points of orbits" % (len(diagram.members), format(diagram.points, ","))
 
 
 def run(options):
-    check_figure(options, options.map)
-    if not options.plane and not options.restore:
-        if options.down_to is not None:
-            raise ConverseError("--down-to needs --plane or -r")
-        found = ParameterMap.load(options.map)
+    check_figure(options, *filter(None, (options.input, options.backup, options.restore)))
+    kept = options.restore or options.backup
+    if options.restore and options.backup:
+        raise ConverseError("-r goes on in the file that it names; leave out -b")
+    if kept is None and _is_diagram(options.input):
+        if options.budget is not None:
+            raise ConverseError("--budget is for a search; go on with -r " + options.input)
+        kept = options.input
+        found = Diagram.load(kept)
     else:
-        from ..parameters.search import explore  # it needs the C core
-
-        with ProgressLine() as line, executor_of(options) as executor:
-            found = explore(
-                options.plane, options.down_to, path=options.map, resume=options.restore,
-                jobs=options.jobs, executor=executor, time_limit=options.time_limit,
-                progress=lambda *done: line(lambda: progress_text(*done)))
-    say(found.report(options.map))
-    points = []
-    if options.tori is not None:
-        from ..parameters.tori import proved_points
-
-        points = [point for point, _ in proved_points(options.tori) if found.in_plane(point)]
-        say("Tori : %d of the plane, with certificates in %s that converse-check verifies\n" % (
-            len(points), plain(options.tori)))
+        found = _search(options, kept)
+    say(found.report(kept))
     if options.graphics is not None:
-        from ..draw import map_figure
-        map_figure.draw(found, options.graphics, points)
-    return 0 if found.complete else 1
+        from ..draw import diagram_figure
+        diagram_figure.draw(found, options.graphics)
+    return 0 if found.members or found.sides else 1
+
+
+def _is_diagram(name):
+    """Is the file a diagram, and not an input?"""
+    return name not in (None, "-") and files.read_text(
+        name, "input or diagram", ": is neither an input nor a diagram").startswith(FIRST_WORDS)
+
+
+def _search(options, kept):
+    from ..diagram import explore  # it needs the C core
+
+    family, given = None, {} if options.budget is None else {"budget": options.budget}
+    if options.input is not None or options.restore is None:
+        problem = read_problem(options.input, COMMAND)
+        if not problem.full_torus:
+            raise ConverseError("the input names a part of the torus (v0, v1); leave it out")
+        family = problem.map
+    with ProgressLine() as line, executor_of(options) as executor:
+        def tell(text):
+            line.clear()
+            say(text + "\n")
+
+        return explore(family, path=kept, resume=options.restore is not None, jobs=options.jobs,
+                       executor=executor, time_limit=options.time_limit, tell=tell,
+                       progress=lambda diagram: line(lambda: progress_text(diagram)), **given)
 
 
 def interrupted(options):
-    return ("continue with -r " + options.map if options.map and os.path.exists(options.map)
-            else "nothing was found yet")
+    kept = options.restore or options.backup
+    return "continue with -r " + kept if kept and os.path.exists(kept) else \
+        "nothing was kept; keep what is proved with -b FILE"
 
 
-main = command(COMMAND, parser, run, interrupted, map=None)
+main = command(COMMAND, parser, run, interrupted, backup=None, restore=None)
 
 if __name__ == "__main__":
     sys.exit(main())

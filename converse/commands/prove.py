@@ -24,7 +24,7 @@ ENDING = ending(
     "(the input is one of those that converse --list-inputs names)",
     "converse-check     verifies the proof independently\n"
     "converse-tori      proves that there is a torus\n"
-    "converse-map       maps for which a, b, c there is none\n"
+    "converse-map       finds for which values of a parameter there is none\n"
     "converse-portrait  shows where in phase space a map of one angle has no circle\n"
     "converse-orbits    finds periodic orbits, and proves them", (
         (0, "a theorem"), (1, "undecided"),

@@ -187,13 +187,14 @@ class SymplecticMap(Dynamics):
 
     # ---- other maps
 
-    def at(self, **values: Number) -> "SymplecticMap":
+    def at(self, **values: Union[Range, Number]) -> "SymplecticMap":
         """The map, or smaller family, at values of some parameters.
 
         Parameters
         ----------
         values
-            Exact numbers by the names of parameters; they may lie outside of the ranges.
+            Exact numbers, or ranges (low, high), by the names of parameters; they may lie outside
+            of the family's ranges.
 
         Raises
         ------

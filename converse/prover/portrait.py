@@ -22,7 +22,7 @@ from ..model.region import MARGIN, PLACES, reversal_centre
 from ..model.statement import conditions, ended, indented, map_lines
 from ..storage.backup import Backup
 from ..storage.files import ConverseError, Path
-from ..storage.kept import Kept, headline, sealed, unsealed, verify_text
+from ..storage.kept import Kept, headline, read_sealed, sealed, unsealed, verify_text
 from ..storage.signals import interruptible
 from ..version import __version__
 from . import native, tree
@@ -279,7 +279,7 @@ class Portrait(Kept):
 
     @classmethod
     def load(cls, path: Path) -> "Portrait":
-        lines, sha256 = unsealed(path, FIRST_LINE, "portrait")
+        lines, sha256 = unsealed(read_sealed(path, "portrait"), path, FIRST_LINE, "portrait")
         try:
             start = lines.index("columns:")
             pairs = [line.split(": ", 1) for line in lines[1:start]]

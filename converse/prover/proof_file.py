@@ -8,7 +8,7 @@ from fractions import Fraction
 from ..model.exact import DECIMAL, decimal_text, exact
 from ..model.map import from_patch
 from ..model.problem import NAMES, Problem
-from ..storage.kept import damaged, sealed, unsealed
+from ..storage.kept import damaged, read_sealed, sealed, unsealed
 from . import tree
 from .native import CONSTANTS, Counts
 from .proof import Proof, Tree
@@ -22,7 +22,12 @@ LINE_WIDTH = 78                              # of the tree's lines
 
 def load(path):
     """Proof.load()."""
-    lines, sha256 = unsealed(path, FIRST_LINE, "proof file")
+    return parsed(read_sealed(path, "proof file"), path)
+
+
+def parsed(text, path):
+    """The Proof in the text of a file, which messages about it call `path`."""
+    lines, sha256 = unsealed(text, path, FIRST_LINE, "proof file")
     if "tree:" not in lines:
         raise damaged(path, len(lines) + 3, "there is no tree")
     start, values = lines.index("tree:"), defaultdict(list)

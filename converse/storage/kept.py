@@ -100,13 +100,18 @@ def sealed(lines: List[str]) -> str:
     return text + "checksum: sha256 %s\nend\n" % files.sha256(text)
 
 
-def unsealed(path: Path, first_line: str, what: str) -> Tuple[List[str], str]:
-    """Reads such a file.  Returns its lines without the checksum, and the text's SHA-256.
-
-    ConverseError: it cannot be read, does not begin with this line, or is damaged; the text calls
-    it by the word `what`."""
-    text = files.read_text(path, what, ", line 1: the file is truncated or not a %s of this program"
+def read_sealed(path: Path, what: str) -> str:
+    """The text of such a file.  ConverseError: it cannot be read, or is not text; the message
+    calls it by the word `what`."""
+    return files.read_text(path, what, ", line 1: the file is truncated or not a %s of this program"
                            % what)
+
+
+def unsealed(text: str, path: Path, first_line: str, what: str) -> Tuple[List[str], str]:
+    """The lines of such a text without the checksum, and the text's SHA-256.
+
+    ConverseError: it does not begin with this line, or is damaged; the message calls it by the word
+    `what`, and names its path."""
     lines, (kind, _, version) = text.split("\n"), first_line.rpartition(" ")
     if re.fullmatch(kind + " [0-9]+", lines[0]) and lines[0] != first_line:
         raise ConverseError("%s: is a %s of another format; this release reads format %s, so "

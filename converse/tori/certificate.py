@@ -68,9 +68,7 @@ def tori_of(claim: check.TorusClaim) -> Tuple[Torus, ...]:
                            tuple(wave.middle for wave in claim.waves), n)
     part = None if claim.pieces[0].low == claim.pieces[0].high else tuple(
         wave.parts[0] for wave in claim.waves)
-    rotation = Rotation("", claim.polynomial, claim.root, claim.rotation)
-    rotation = replace(rotation, name=name_of(rotation))        # whatever a hint calls it
-    tori = []
+    rotation, tori = rotation_of(claim), []
     for piece, rho in zip(claim.pieces, claim.rho):
         rows = sorted(piece.modes.items())
         numbers = np.array([series for _, series in rows], object).reshape(
@@ -80,6 +78,12 @@ def tori_of(claim: check.TorusClaim) -> Tuple[Torus, ...]:
             np.array([k for k, _ in rows], np.int64).reshape(-1, n), numbers.transpose(3, 1, 2, 0),
             Strip(claim.frame, claim.alpha, rho), (piece.low, piece.high)))
     return tuple(tori)
+
+
+def rotation_of(claim: check.TorusClaim) -> Rotation:
+    """The rotation vector of a certificate."""
+    rotation = Rotation("", claim.polynomial, claim.root, claim.rotation)
+    return replace(rotation, name=name_of(rotation))        # whatever a hint calls it
 
 
 def text(tori: Sequence[Torus]) -> str:

@@ -1,6 +1,11 @@
 import math
+import random
+from fractions import Fraction
 
 import pytest
+
+from converse import StandardMap, prove, tori
+from converse.diagram import Diagram
 
 from checker import check
 from truth import TORTURE
@@ -13,15 +18,44 @@ def bounds_once():
     """Bounds B over the torus once where several tests ask for the same."""
     torus_bound = check.torus_bound
 
-    def bound(fixed, waves, corners, most=None):
-        key = fixed.bits, tuple(waves), tuple(sorted(set(corners))), most
+    def bound(fixed, waves, corners):
+        key = fixed.bits, tuple(waves), tuple(sorted(set(corners)))
         if key not in BOUNDS:
-            BOUNDS[key] = torus_bound(fixed, waves, corners, most)
+            BOUNDS[key] = torus_bound(fixed, waves, corners)
         return BOUNDS[key]
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(check, "torus_bound", bound)
         yield
+
+
+@pytest.fixture(scope="session")
+def diagram():
+    """A diagram of the standard map, as text: proofs for two ranges, and the golden circle for
+    another."""
+    found = Diagram.of(StandardMap((0, 2)))
+    for ends in ("1.2", "1.3"), ("1.6", "1.7"):
+        found.add(prove(StandardMap(ends)))
+    found.add(tori.prove(StandardMap(("0.1", "0.2")), "golden"))
+    found.sides["above"] = Fraction("2.5"), (Fraction(1, 2), Fraction(0)), (1, 0)
+    return found._text()
+
+
+@pytest.fixture
+def generator(request):
+    return random.Random(request.node.name)
+
+
+@pytest.fixture
+def run(tmp_path, capsys):
+    """Checks a text or bytes: (status, stdout, stderr)."""
+    def run(data, *options, name="some.proof"):
+        path = tmp_path / name
+        path.write_bytes(data if isinstance(data, bytes) else data.encode("utf-8"))
+        status = check.main([*options, str(path)])
+        out, err = capsys.readouterr()
+        return status, out, err.replace(str(path), "FILE")      # its directory names the test
+    return run
 
 
 @pytest.fixture

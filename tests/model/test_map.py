@@ -164,7 +164,7 @@ def test_it_is_the_map_of_the_potential():
 
 def test_all_rooms_are_there():
     assert converse.orbits.follow and converse.tori.find and converse.check.verify
-    assert converse.parameters.explore and set(converse.__all__) <= set(dir(converse))
+    assert converse.diagram.explore and set(converse.__all__) <= set(dir(converse))
     with pytest.raises(AttributeError, match="has no attribute 'rooms'"):
         converse.rooms
 

@@ -15,8 +15,6 @@ from test_numbers import PAGES, POINTS, number, rows, said, sharper
 from converse import Problem, portray, tori
 from converse.model.inputs import read_input
 from converse.model.map import MuldoonMap
-from converse.parameters.map import PROVED
-from converse.parameters.search import explore
 
 from truth import TORTURE
 
@@ -133,15 +131,6 @@ def test_shares_of_portraits(k, kind, share):
     """Rounded up to the places of the table."""
     digits, exact = share.split()[0], 100 * PORTRAITS[kind](k).undecided
     assert 0 <= Fraction(digits) - exact <= Fraction(1, 10 ** len(digits.partition(".")[2]))
-
-
-@dear
-@pytest.mark.parametrize("plane, ratio, cells, prisms", rows("map.md", "plane")[1:])
-def test_maps_of_planes(plane, ratio, cells, prisms, tmp_path):
-    """What is down to the ratio is what the picture was asked for."""
-    found = explore(plane.replace(" ", ""), str(Fraction(ratio)), path=tmp_path / "plane.json")
-    assert found.complete and found.count(PROVED) == number(cells)
-    assert number(re.search(r"Prisms : ([0-9,]+)", found.report())[1]) == number(prisms)
 
 
 def rows_of_tori():

@@ -40,7 +40,7 @@ def test_python_examples_run(name, tmp_path):
                             text=True, timeout=PATIENCE)
     assert (result.returncode, result.stderr) == (0, "")
     said = {"orbits.md": "THEOREM, proved", "tori.md": "Proved",
-            "portrait.md": "no rotational invariant circle"}
+            "portrait.md": "no rotational invariant circle", "map.md": "has no invariant torus"}
     assert said.get(name, "no invariant tori") in result.stdout
 
 
@@ -51,8 +51,8 @@ def test_commands_are_understood():
         lines = re.findall(r"^    (?:\S*/)?(converse\S*) *(.*)$", text, re.MULTILINE)
         spans = re.findall(r"`(converse\S*) ([^`[]*)`", text)
         for command, arguments in lines + spans:
-            file = re.match("(proof|state|map|portrait|torus) [0-9]$", arguments)     # a first line
-            if command in PARSERS and "..." not in arguments and not file:
+            first_line = re.match("(proof|state|diagram|portrait|torus) [0-9]$", arguments)
+            if command in PARSERS and "..." not in arguments and not first_line:
                 arguments = re.sub(r"\b[KN]\b", "3", arguments.partition("#")[0])
                 try:
                     PARSERS[command]().parse_args(shlex.split(arguments))

@@ -10,8 +10,6 @@ import chart
 import pytest
 import sides
 
-from converse.draw.map_figure import MARKED_POINTS
-
 ROOT = Path(__file__).resolve().parent.parent.parent
 DOCS = ROOT / "docs"
 PAGES = {page.name: page.read_text("utf-8") for page in (ROOT / "README.md", *DOCS.rglob("*.md"))}
@@ -25,11 +23,9 @@ NO_TORUS, TORUS, NO_CIRCLE, CIRCLE, THESIS = "0.01389", "0.0122", "0.9718", "0.9
 NO_CIRCLE_ALONE = "0.97165"             # of the standard map, for this k alone
 SHOWN = {
     "chart-bound.svg": (NO_TORUS, TORUS), "frontier.svg": (NO_TORUS, TORUS, THESIS),
-    "map-ab.svg": (NO_TORUS, TORUS, THESIS),
     "chart-sides.svg": (TORUS, NO_CIRCLE_ALONE, CIRCLE),
     "README.md": (NO_TORUS, TORUS, NO_CIRCLE, NO_CIRCLE_ALONE, CIRCLE),
     "frontier.md": (NO_TORUS, TORUS, NO_CIRCLE, NO_CIRCLE_ALONE, CIRCLE),
-    "map.md": (NO_TORUS, TORUS),
     "speed.md": (NO_TORUS,), "trust.md": (NO_TORUS,), "questions-of-1989.md": (NO_TORUS, TORUS),
     "tori.md": (TORUS, CIRCLE), "method.md": (NO_CIRCLE, NO_CIRCLE_ALONE),
     "limits.md": (NO_CIRCLE, NO_CIRCLE_ALONE), "first-proof.md": (NO_CIRCLE_ALONE, CIRCLE)}
@@ -76,7 +72,6 @@ def test_scripts_draw_these_values():
     toughest = runpy.run_path(str(ROOT / "experiments" / "toughest.py"))
     assert toughest["NO_TORI"] == (float(NO_TORUS), float(THESIS))
     assert toughest["TORUS_AT"][-1] == float(TORUS)
-    assert [value for value, *_ in MARKED_POINTS] == [*map(float, (THESIS, NO_TORUS, TORUS))]
     assert chart.LAST[0] == NO_TORUS
     assert [row[2] for row in sides.LONGEST] == [CIRCLE, "0.0120", "0.0121", TORUS, NO_CIRCLE_ALONE]
 

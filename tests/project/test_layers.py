@@ -8,7 +8,7 @@ from conftest import ROOT
 
 # From the ground up; a room imports only what is on lower floors.  (_native is compiled; the
 # package itself, "", loads what it is asked for.)
-FLOORS = [["version", "_native", "storage"], ["model"], ["prover", "tori"], ["parameters"],
+FLOORS = [["version", "_native", "storage"], ["model"], ["prover", "tori"], ["diagram"],
           ["draw"], ["orbits"], ["commands"], ["", "__main__"]]
 BESIDE = ["check", "_build"]            # import nothing of the others
 
@@ -19,7 +19,7 @@ UPWARDS = {("model.map", "model.inputs"): "SymplecticMap.read",
            ("storage.kept", "check"): "the type of what verify() returns",
            ("prover.proof", "draw.plot"): "Proof.plot",
            ("prover.portrait", "draw.portrait_figure"): "Portrait.plot",
-           ("parameters.map", "draw.map_figure"): "ParameterMap.plot",
+           ("diagram.value", "draw.diagram_figure"): "Diagram.plot",
            ("orbits.state", "orbits.pictures"): "PeriodicOrbit.plot",
            ("orbits.state", "orbits.report"): "PeriodicOrbit.report",
            ("orbits.solver", "orbits.report"): "Family.report",
@@ -94,7 +94,7 @@ def test_no_arrow_leads_upwards(arrows):
     floor = {name: i for i, names in enumerate(FLOORS) for name in names}
 
     def right(name, target):
-        if name == target or name in ("", "commands", "tori") and target == "check":
+        if name == target or name in ("", "commands", "diagram", "tori") and target == "check":
             return True
         return not {name, target} & {*BESIDE} and floor[name] > floor[target]
 

@@ -1,5 +1,5 @@
 """docs/reference/reports.md explains each line of each report: the labels of the golden outputs and
-of reports that the commands print here.  (Those of maps are in tests/parameters/test_maps.py.)"""
+of reports that the commands print here.  (Those of diagrams are in tests/diagram.)"""
 
 import re
 from pathlib import Path
@@ -25,8 +25,8 @@ def explained():
 
 
 def labels(text):
-    """Of a report, with "a" for the letter of a part, and without the numbers of a face."""
-    return {re.sub("^Face .*", "Face", re.sub("^(Part|x\\* of) [a-z]$", r"\1 a", label))
+    """Of a report, with "a" for the letter of a part."""
+    return {re.sub("^(Part|x\\* of) [a-z]$", r"\1 a", label)
             for label in re.findall(LABEL, text)}
 
 

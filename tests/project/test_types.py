@@ -7,7 +7,7 @@ import re
 import pytest
 
 import converse
-from converse import orbits, parameters, tori
+from converse import diagram, orbits, tori
 
 api = pytest.importorskip("mypy.api")
 
@@ -30,7 +30,7 @@ def functions(module):
                 yield value
 
 
-@pytest.mark.parametrize("module", [converse, parameters, orbits, tori],
+@pytest.mark.parametrize("module", [converse, diagram, orbits, tori],
                          ids=lambda module: module.__name__)
 def test_public_names_are_annotated(module):
     """Every argument and every result."""

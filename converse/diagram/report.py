@@ -1,0 +1,79 @@
+"""The report of a diagram: its theorem in the parameters of the family, and what is open."""
+
+from ..check import box_words, exact_text
+from ..model.exact import decimal_text, rounded
+from ..model.problem import Problem
+from ..model.statement import TORUS, ended, indented, labelled, map_lines, whole
+from ..storage.kept import headline, verify_text
+
+TERMS = 8                               # of a continued fraction
+PLACES = 12                             # of the components of a rotation vector
+
+
+def report(diagram, file=None):
+    """Diagram.report()."""
+    two, names, lines = diagram.family.dimension == 2, diagram.names, []
+    torus, values = TORUS[diagram.family.dimension], [
+        whole(box_words(names, box)) for box in diagram.boxes]
+    tori = [(whole(box_words(names, member.box)), member.rotation)
+            for member in sorted(diagram.members, key=lambda member: member.box)
+            if member.rotation is not None]
+    larger = [whole(box_words(names, member.box)) for member in diagram.members if member.larger]
+    if values:
+        lines += ["has no %s J = P + S'(y)%s, P constant, S periodic and C1, for %s" % (
+            torus, " over both angles" * two, "; ".join(values))]
+    if larger:
+        lines += ["and for every multiple s >= 1 of " + "; ".join(larger)]
+    if tori:
+        lines += ["%shas a%s %s, real analytic and conjugate to a rotation, for %s" % (
+            "and " * bool(values), "n" * two, torus, "; ".join(words for words, _ in tori))]
+    pins = box_words(diagram.family.names[len(names):], diagram.family.ranges[len(names):])
+    first = headline("THEOREM", diagram.restored, "proof") if lines else \
+        "UNDECIDED: nothing is proved."
+    lines = [first, *ended([*map_lines(Problem.of(diagram.family)), *indented(
+        ["where %s," % pins] * bool(pins) + lines)]), ""]
+    for label, text in _grounds(diagram, tori, file):
+        lines += labelled(label, text)
+    return "\n".join(lines) + "\n"
+
+
+def _grounds(diagram, tori, file):
+    """(label, text) of the lines below the theorem."""
+    if diagram.members or diagram.sides:
+        yield "Verify", verify_text(file, "diagram")
+    for words, rotation in tori:
+        yield "Rotation", "%s: %s" % (words, rotation_text(rotation))
+    yield "Searched", "%s; between proved values nothing is proved" % box_words(
+        diagram.names, diagram.ranges)
+    if len(diagram.ranges) == 1:
+        yield "Open", "; ".join(whole("%s < %s < %s" % (
+            exact_text(low), *diagram.names, exact_text(high))) for low, high in diagram.open
+            ) or "nothing"
+    else:
+        yield "Open", "%.2f %% of the rectangle" % (100 * _open_share(diagram))
+    for each in diagram.seen:
+        yield "Seen", "%s: a torus, not proved, rotation %s" % (
+            box_words(diagram.names, [(x, x) for x in each.value]),
+            ", ".join("%.9g" % x for x in each.rotation))
+    yield "Search", "%d proofs that there is none, %d of tori; %s points of orbits, %.0f s" % (
+        len(diagram.members) - len(tori), len(tori), format(diagram.points, ","), diagram.seconds)
+    if diagram.sha256:
+        yield "SHA-256", diagram.sha256
+
+
+def _open_share(diagram):
+    """The share of the rectangle of two parameters in which nothing is proved."""
+    def area(low, high):
+        return (high[0] - low[0]) * (high[1] - low[1])
+
+    return float(sum(area(*box) for box in diagram.open) / area(*zip(*diagram.ranges)))
+
+
+def rotation_text(rotation):
+    """A rotation vector: its name or polynomial, its first decimals and, of one angle, its
+    continued fraction."""
+    text = ", ".join(decimal_text(rounded(low, PLACES, up=low < 0), PLACES) + "..."
+                     for low, _ in rotation.turns(30))
+    if rotation.dimension == 1:
+        text += " = " + rotation.continued_fraction(TERMS)
+    return "omega = %s (%s)" % (text, rotation)
