@@ -14,8 +14,7 @@ from ..storage.files import ConverseError
 from .limits import (EIGENVALUE_ROUNDING, EIGENVALUE_STEP, MAX_DISPLACEMENT, MAX_PIVOTS, MAX_Q,
                      MAX_SHADOW, NULL_EIGENVALUE, SHADOW_REACH)
 from .potential import Potential, address, done, finite, known, whole
-from .stability import (Monodromy, beyond, log_excesses, log_multipliers, log_weak_excess,
-                        product)
+from .stability import Monodromy, beyond, log_excesses, log_multipliers, log_weak_excess, product
 
 if TYPE_CHECKING:
     from .minimax import Pair
