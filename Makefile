@@ -33,6 +33,8 @@ endef
 
 prove: $(VENV)/installed
 	$(VENV)/bin/converse -d30 inputs/trig274.in
+	@echo
+	$(VENV)/bin/converse --method loewner inputs/trig274.in
 
 # The tests except the slow ones, a share of every room (tests/conftest.py).  The first run also
 # downloads the test tools.

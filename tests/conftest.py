@@ -106,7 +106,7 @@ def made_up():
                                  ("0.00125", "0.00125", "0.0025", h0, h1), comments)
         counts = counts or Counts(cuts=tree.count("0") + tree.count("1"), proved=tree.count("P"),
                                   symmetric=tree.count("S"), undecided=tree.count("U"))
-        settings = Settings(**{name: options.pop(name) for name in
+        settings = Settings(**{"method": "thesis"} | {name: options.pop(name) for name in
                                ("method", "depth", "digits", "stubborn", "as_printed")
                                if name in options})
         names = "T", "Tr-", "Tr+", "B", "lambda-min", "lambda-max"

@@ -14,7 +14,8 @@ from .limits import MAX_K, MAX_LINE, MAX_WAVES
 COUNTS = ("depth", "cuts", "proved", "symmetric", "linked", "undecided", "most_cuts")
 IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries", "reasons",
            "HermSuccess", "LLSuccess", "ll_used", "max_steps", "max_NTsteps", "B", "pending")
-OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "parameter", "comment"}
+OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "hopeless", "parameter",
+            "comment"}
 FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame", "alone",
           "odd about"}
 REPEATED = {"wave", "parameter", "comment", "seen", "search"}

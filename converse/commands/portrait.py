@@ -76,7 +76,7 @@ def run(options):
                         resume=options.restore is not None, jobs=options.jobs,
                         executor=executor, time_limit=options.time_limit,
                         progress=lambda *done: line(lambda: progress_text(*done)))
-    say(found.report(path))
+    say(found.report(path or ""))
     if options.graphics is not None:
         from ..draw import portrait_figure
         tori = _tori(rotations, found.problem)

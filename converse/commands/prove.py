@@ -9,7 +9,7 @@ import time
 
 from ..model.exact import decimal_text
 from ..prover.report import header, verdict
-from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED, Settings
+from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
@@ -79,8 +79,8 @@ def parser():
     p.add_argument("--as-printed", action="store_true", default=None,
                    help="follow the thesis's listing to the letter; not a proof")
     p.add_argument("--method", choices=tuple(METHODS),
-                   help="the thesis's criterion (default), or the sharper one, in rigorous double "
-                   "precision")
+                   help="the thesis's criterion (default of an input with ranges of a, b and c), "
+                   "or the sharper one, in rigorous double precision (default of any other)")
     p.add_argument("--together", action="store_true",
                    help=TOGETHER + " (loewner)")
     p.add_argument("--xstar", nargs=2, type=_decimal, metavar=("X0", "X1"),
@@ -141,9 +141,6 @@ def run(options):
                  prisms=True)
     given = {name: value for name, value in vars(options).items() if value is not None and
              name in ("method", "depth", "digits", "stubborn", "as_printed")}
-    if options.method == "loewner" and options.digits is not None:
-        raise ConverseError("-p is of the thesis's arithmetic, and --method loewner works in "
-                            "doubles; leave one of them out")
     if options.backup is not None:
         files.check_writable(options.backup, regular=True)
         files.check_new(options.backup, options.restore)
@@ -153,8 +150,9 @@ def run(options):
 
     problem = None
     if options.restore is None:
-        given["method"] = Settings(**given).method
         problem = read_problem(options.input, together=options.together)
+        if problem.by_ranges and not options.together:      # an input of 1989
+            given.setdefault("method", "thesis")
     elif options.input or options.together:
         raise ConverseError("-r continues a run as it was asked for; leave out the input and "
                             "--together")
@@ -166,7 +164,7 @@ def run(options):
                       progress=progress, on_leaf=on_leaf if options.verbose else None, **given)
         if not options.begun:           # the time limit came before the search
             progress(0.0, proof.counts)
-    say(verdict(proof, options.backup or options.restore))
+    say(verdict(proof, options.backup or options.restore or ""))
     if options.graphics is not None:
         from ..draw import plot
         plot.write(proof, options.graphics)

@@ -217,7 +217,7 @@ def _prove_torus(options):
             line.clear()
             say(report.undecided(problem, rotation, reason, _by_hand(options), _left(options)))
             return 1
-    certificate = {}
+    certificate = {"certificate": ""}
     try:
         if options.backup is not None:
             certificate = {"certificate": options.backup, "checksum": proof.save(options.backup)}

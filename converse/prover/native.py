@@ -70,6 +70,7 @@ def check(code):
     return code
 
 
+TOO_LONG = lib.CV_REASON_TOO_LONG       # index of Counts.reasons
 MAXIMA = "most_cuts", "max_steps", "max_NTsteps"    # of Counts: all other fields are sums
 
 

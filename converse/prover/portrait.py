@@ -208,7 +208,7 @@ class Portrait(Kept):
         Parameters
         ----------
         file
-            The name of the portrait's file, if there is one.
+            The name of the portrait's file; "" if a command was given none.
         """
         shares = [self.share(x) for x in self.found]
         of = "phase space" if self.strip else "the successors in them, on average"
@@ -231,7 +231,9 @@ class Portrait(Kept):
                 decimal_text(rounded(x, 4, up=True), 4) for x in (min(shares), max(shares)))]
         if not proved:
             lines += ["To try : " + ("a depth above %d (--depth)" % self.depth if shares else
-                                     "more time, from a file (-b FILE, then -r FILE)")]
+                                     "more time, from a file (%s)" % (
+                                         "path=FILE, then resume=True" if file is None else
+                                         "-b FILE, then -r FILE"))]
         lines += ["Time : %.0f seconds" % self.seconds]
         lines += ["SHA-256 : " + self.sha256] if self.sha256 else []
         return "\n".join(lines) + "\n"

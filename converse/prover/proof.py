@@ -13,8 +13,9 @@ from ..storage.files import Path
 from ..storage.kept import Kept
 from ..version import __version__
 from . import tree
-from .native import Counts
-from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
+from .native import TOO_LONG, Counts
+from .settings import (AS_PRINTED, DEPTH, DOUBLES, HOPELESS, LENGTH, REGION, THEOREM, TIME,
+                       UNDECIDED, Settings)
 from .tree import Leaf
 
 
@@ -74,6 +75,9 @@ class Proof(Kept):
     at_once
         Whether no multiples of these amplitudes by s > 1 have tori (if there is one parameter, as
         where a, b and c move together: multiples of those at its upper end).
+    hopeless
+        Whether the search ended because orbits were seen that seem to minimize: there is probably a
+        torus, and neither time nor depth would help.
     restored
         How many leaves were read from a file; links may have taken the place of some.
     sha256
@@ -83,10 +87,11 @@ class Proof(Kept):
     trees: Tuple[Tree, ...]
     settings: Settings = Settings()
     counts: Counts = Counts()
-    constants: Dict[str, str] = field(default_factory=dict)
+    constants: Dict[str, str] = field(default_factory=dict, hash=False)
     seconds: float = field(default=0.0, compare=False)
     version: str = __version__
     at_once: bool = False
+    hopeless: bool = False
     restored: int = field(default=0, compare=False)
     sha256: str = field(default="", compare=False)
 
@@ -94,7 +99,8 @@ class Proof(Kept):
         return self.no_tori
 
     def __repr__(self):
-        return "<Proof: %s; %d prisms proved, %d %s, %d undecided; %s, %s>" % (
+        return "<Proof: %s; %s; %d prisms proved, %d %s, %d undecided; %s, %s>" % (
+            self.problem.map,
             {THEOREM: "no invariant tori", REGION: "none through a part of the torus",
              UNDECIDED: "undecided", AS_PRINTED: "as printed, not a proof"}[self.conclusion],
             self.counts.proved, self.counts.linked if self.parts else self.counts.symmetric,
@@ -175,6 +181,22 @@ class Proof(Kept):
         return REGION if self.symmetries_used is None else THEOREM
 
     @property
+    def ended(self) -> str:
+        """The reason why an undecided search ended.  "hopeless as seen": see `hopeless`.  "limit of
+        length", "limit of depth": an orbit would be too long, or a prism was cut as often as
+        `depth` allows.  "limit of doubles": a prism is as small as doubles can tell.  "time": there
+        was no time left, or the run was interrupted.  "": the search is decided."""
+        if self.all_decided:
+            return ""
+        if self.hopeless:
+            return HOPELESS
+        if not self.undecided:
+            return TIME
+        if all(leaf.depth >= self.depth for leaf in self.undecided):
+            return DEPTH
+        return LENGTH if self.method == "loewner" and self.counts.reasons[TOO_LONG] else DOUBLES
+
+    @property
     def no_tori(self) -> bool:
         """Is it proved that there are no invariant tori?"""
         return self.conclusion == THEOREM
@@ -193,7 +215,7 @@ class Proof(Kept):
                 for leaf in tree.leaves(each.problem, each.text, "U")]
 
     def report(self) -> str:
-        """The report of 1989, and what a reader needs beside it."""
+        """The report: with the thesis's method that of 1989, and what a reader needs beside it."""
         from .report import report
         return report(self)
 

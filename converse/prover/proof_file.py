@@ -75,6 +75,7 @@ def text_of(proof):
     lines += ["depth: %d" % proof.depth, "digits: %d" % proof.digits,
               "stubborn: " + _yes(proof.settings.stubborn), "at once: " + at_once]
     lines += [] if proof.all_decided else ["seconds: %.2f" % proof.seconds]
+    lines += ["hopeless: yes"] if proof.hopeless else []
     pending, before = (), 0
     for each in proof.trees:            # a hint that is missing is 0
         pending += (0,) * (before - len(pending)) + each.pending
@@ -142,6 +143,7 @@ def _proof(fields, trees, sha256):
         raise ValueError("parts, which go with the sharper method and no coordinate that is alone")
     return Proof(tuple(grown), settings, Counts(**counts), constants,
                  float(values.get("seconds", 0)), program[1], _at_once(values, problem),
+                 values.get("hopeless") == "yes",
                  sum(text.count("P") + text.count("S") for _, text in trees), sha256)
 
 

@@ -13,11 +13,21 @@ from ..model.statement import (TORUS, conditions, ended, indented, labelled, map
                                parameters, whole)
 from ..storage.kept import verify_text
 from . import report_1989, tree
-from .report_1989 import deeper, quoted
-from .settings import REGION, THEOREM
+from .report_1989 import MORE_TIME, deeper, quoted
+from .settings import DEPTH, DOUBLES, HOPELESS, LENGTH, REGION, THEOREM, TIME
 
 TINY = 1e-10                            # half-width of an angle, in units of pi
 HUGE = 2 ** 60                          # MAX_AMPLITUDE of csrc/loewner/problem.c
+ENDED = {
+    HOPELESS: "hopeless as seen: long orbits in thin prisms contradict nothing, as near a torus",
+    LENGTH: "at the limit of length: a prism needs a longer orbit than the method follows",
+    DEPTH: "at the limit of depth: a prism was cut as often as -d allows",
+    DOUBLES: "at the limit of doubles: a prism is too small, or rounding errors are too large",
+    TIME: "before the whole region was examined: there was no time left, or a signal came",
+}
+KEYWORDS = {                            # of prove(), by the command's flags
+    "-b FILE, then -r FILE": "save(FILE), then prove(resume=FILE)",
+    "--xstar X0 X1": "xstar=(X0, X1)", "--method loewner": "method='loewner'", "-d ": "depth="}
 REASONS = (report_1989.REASONS[0], "the prism was too large", *report_1989.REASONS[2:])
 
 
@@ -27,18 +37,25 @@ def header(proof):
 
 
 def verdict(proof, file=None):
-    """The conclusion, and what it rests on.  file: the name of the proof's file, or None."""
+    """The conclusion, and what it rests on.  file: as in verify_text."""
     if proof.method == "thesis":
-        return report_1989.verdict(proof)
-    lines = _theorem(proof) if proof.all_decided else _undecided(proof)
+        return _advised(report_1989.verdict(proof), file)
+    lines = _theorem(proof) if proof.all_decided else _undecided(proof, file)
     for label, text in _grounds(proof, file):
         lines += labelled(label, text)
     return "\n".join(lines) + "\n"
 
 
 def report(proof):
-    """The whole report."""
+    """The whole report, for a Python program."""
     return header(proof) + verdict(proof)
+
+
+def _advised(text, file):
+    """The text, in which advice for a Python program names keywords and not flags."""
+    for flag, keyword in KEYWORDS.items() if file is None else ():
+        text = text.replace(flag, keyword)
+    return text
 
 
 # ---- the theorem
@@ -63,7 +80,7 @@ def _theorem(proof):
 
 # ---- without a theorem
 
-def _undecided(proof):
+def _undecided(proof, file):
     problem, undecided = proof.problem, proof.undecided
     torus = {1: "a rotational invariant circle", 2: "an invariant torus"}[problem.map.dimension]
     flat = not any(map(any, (problem.amplitude, *problem.parts)))
@@ -82,27 +99,31 @@ def _undecided(proof):
     if stuck:
         lines += labelled("", "one of them is as small as doubles can tell: the orbit from x* "
                            "to it may minimize")
-    if not all(tree.complete(each.text) for each in proof.trees):
-        lines += labelled("Ended", "before the whole region was examined")
+    lines += labelled("Ended", _advised(ENDED[proof.ended], file))
     if sum(proof.counts.reasons):
         lines += labelled("Tries", "%s without a proof: %s" % (
             _count(sum(proof.counts.reasons)), ", ".join(
                 "%s because %s" % (_count(number), why)
                 for number, why in zip(proof.counts.reasons, REASONS) if number)))
-    return lines + labelled("To try", _advice(proof, undecided, stuck, flat))
+    return lines + labelled("To try", _advised(_advice(proof, stuck, flat), file))
 
 
-def _advice(proof, undecided, stuck, flat):
+def _advice(proof, stuck, flat):
     if flat:
         return "amplitudes that are not all 0: the map without potential has invariant tori"
     if any(abs(p) + sum(map(abs, parts)) >= HUGE
            for p, *parts in zip(proof.problem.amplitude, *proof.problem.parts)):
         return "amplitudes below 2^60, near 10^18: larger ones do not fit into its numbers"
-    if not undecided:
-        return "more time, from a backup (-b FILE, then -r FILE)"
-    return ("another x* (--xstar X0 X1), or " * stuck
-            + "a smaller range of parameters, or " * any(map(any, proof.problem.parts))
-            + "larger parameters" + deeper(proof))
+    ended, texts = proof.ended, [each.text for each in proof.trees]
+    across, along = (sum(text.count(axis) for text in texts for axis in axes)
+                     for axes in ("01", "234"))
+    narrower = "a narrower range of parameters, or " * (
+        any(map(any, proof.problem.parts)) and (ended != TIME or along > across))
+    if ended == TIME:
+        return narrower + MORE_TIME
+    return ("another x* (--xstar X0 X1), or " * (stuck or ended == HOPELESS) + narrower
+            + "other parameters" + ("; neither more time nor deeper cuts would help"
+                                    if ended == HOPELESS else deeper(proof)))
 
 
 # ---- what the theorem rests on

@@ -6,12 +6,13 @@ import math
 from ..model.exact import decimal_text, short_text
 from ..storage.files import plain
 from . import tree
-from .settings import AS_PRINTED, LIMIT, REGION, THEOREM, UNDECIDED
+from .settings import AS_PRINTED, LIMIT, REGION, THEOREM, TIME, UNDECIDED
 
 PLUSES = "+" * 48
 MAP = ("Map : y' = y + J', J' = J - dV(y), V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)",
        "x* and v : the angles y at one time and at the next, modulo 2 pi",
        "Tori : invariant graphs J = P + S'(y) over all angles, P constant, S periodic and C1")
+MORE_TIME = "more time (-b FILE, then -r FILE)"
 LEAST_PLACES = 6                        # Ranges are printed with at least six decimal places.
 REASONS = (                             # in the order of csrc/converse.h
     "the orbit of the centre contradicts nothing",
@@ -101,7 +102,8 @@ def _gaps(proof):
     if not any(map(any, (proof.problem.amplitude, *proof.problem.parts))):
         return lines + ["To try : amplitudes that are not all 0, as the map without potential has "
                         "invariant tori."]
-    return lines + ["To try : the sharper criterion (--method loewner)%s." % deeper(proof)]
+    return lines + ["To try : the sharper criterion (--method loewner)%s." % (
+        ", or " + MORE_TIME if proof.ended == TIME else deeper(proof))]
 
 
 def deeper(proof):

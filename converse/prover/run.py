@@ -22,12 +22,15 @@ from .native import Counts, Task
 from .orbit_length import longest
 from .proof import Proof, Tree
 from .resume import continued, counted
-from .settings import Settings
+from .settings import LENGTH, Settings
 from .starts import MAX_PROOF_LEAVES, has_width, plan
 from .tree_search import OLD, TreeSearch
 from .workers import LOOK_SECONDS, WorkerPool, check_options
 
 LONG = 400                              # points: of a proved prism's orbit
+# Tries, after which it is asked whether thin prisms resist: with waves of one combination of the
+# angles most proofs are finished then.
+MANY_TRIES = 10000
 
 
 def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optional[str] = None,
@@ -46,8 +49,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
     source : SymplecticMap or Problem, optional
         The maps; or a Problem, which also says where x_1 is looked for.
     method, depth, digits, stubborn, as_printed : optional
-        See Settings.  The default method is the sharper one, "loewner", unless `digits` or
-        `as_printed`, which only the thesis's method has, are given.
+        See Settings.  `digits` and `as_printed`, which only the thesis's method has, choose it.
     xstar : tuple of two exact numbers, optional
         The angles of x*, in radians.  By default the program chooses them.
     jobs : int, optional
@@ -105,8 +107,11 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
     elif source is None:
         raise TypeError("there must be a map or a problem, or a proof to resume")
     else:
-        if method is None and digits is None and not as_printed:
-            given["method"] = "loewner"
+        if digits is not None or as_printed:
+            given.setdefault("method", "thesis")
+        if digits is not None and method == "loewner":
+            raise ValueError("digits (-p) are of the thesis's arithmetic, and the method loewner "
+                             "works in doubles; leave one of them out")
         before = Proof((Tree(Problem.of(source), None if xstar is None else _point(xstar)),),
                        Settings(**given))
     with interruptible(), Backup(file if backup is None else backup, resumed=file) as backup_file:
@@ -152,7 +157,8 @@ class _Run:
     added to the list."""
 
     def __init__(self, before, backup, jobs, executor, time_limit, progress, on_leaf):
-        self.proof, self.backup, self.jobs, self.executor = before, backup, jobs, executor
+        self.proof = replace(before, hopeless=False)
+        self.backup, self.jobs, self.executor = backup, jobs, executor
         self.progress, self.on_leaf = progress, on_leaf
         self.began, self.seconds_before = time.monotonic(), before.seconds
         self.end = self.began + time_limit
@@ -161,7 +167,8 @@ class _Run:
         self.counts = before.counts             # when that began
         self.tried = set()                      # trees for which others were looked for
         # The most points of an orbit in all trees.  None: that is asked when a prism needs more.
-        self.longest = None if before.problem.is_flat else native.ORDINARY
+        self.may_be_long = before.method == "loewner" and before.problem.is_flat
+        self.longest = None if self.may_be_long else native.ORDINARY
 
     def run(self):
         try:
@@ -169,7 +176,8 @@ class _Run:
                 linked = (not self._tree.decided or self._is_hard()) and self._link()
                 if not linked and self._tree.decided:
                     self.number += 1
-                elif not linked and "U" in self._tree.text:
+                elif not linked and ("U" in self._tree.text or self._is_vain()):
+                    self.proof = replace(self.proof, hopeless=self._is_hopeless())
                     break
                 self.examined = self.share
         except native.WrongTree:            # the file is left to whoever wants to mend it
@@ -209,15 +217,16 @@ class _Run:
             self.search = search
             self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
             self._look()
-            while not (search.finished or search.long or self._is_hard()) and \
-                    self._seconds_left() > 0:
+            while not (search.finished or self._is_doubtful() or self._is_hard()
+                       or self._is_vain()) and self._seconds_left() > 0:
                 search.work(min(LOOK_SECONDS, max(0.0, self._seconds_left())))
                 self._look()
             search.settle()
             self._look()
-            ended = search.finished or self._is_hard()
+            ended = search.finished or self._is_hard() or self._is_vain()
+            doubtful = self._is_doubtful()
             self.proof, self.search = self._snapshot(), None
-        if search.long and not ended:
+        if doubtful and not ended:
             return self._knows_longest() and self._grow()
         return ended
 
@@ -230,6 +239,31 @@ class _Run:
                 self.longest, = pool.results(
                     self._seconds_left_told, [(longest, first.problem, first.xstar)])
         return self.longest is not None
+
+    def _is_doubtful(self):
+        """Is it to be asked now how long orbits may become?"""
+        return self.search.long or (
+            self.longest is None and self.may_be_long and self._counts.tries >= MANY_TRIES)
+
+    def _resists(self):
+        """Are there thin prisms that no orbit contradicts, over the first x* alone?"""
+        return self.may_be_long and self.longest == native.ORDINARY and self.number == 0 and \
+            self._counts.proved > 0 and not tree.count_linked(self._tree.text)
+
+    def _is_vain(self):
+        """Does more work on such a tree prove nothing?  If it cannot be linked it ends then."""
+        return self._resists() and self._counts.tries >= MANY_TRIES and \
+            not self.proof.settings.stubborn
+
+    def _is_hopeless(self):
+        """Is there probably a torus, now that a tree ends undecided?"""
+        return self._resists() or (
+            self.longest == native.ORDINARY and self.proof.ended == LENGTH)
+
+    @property
+    def _counts(self):
+        """The statistics as they stand."""
+        return self.proof.counts if self.search is None else self.search.counts
 
     @property
     def _tree(self):
@@ -246,9 +280,8 @@ class _Run:
     def _is_long(self):
         """Did a prism of the first tree need LONG points?  For a single map of one angle, all
         orbits are long near the last circle."""
-        counts = self.proof.counts if self.search is None else self.search.counts
         problem = self._tree.problem
-        return self.number == 0 and counts.max_NTsteps >= LONG and \
+        return self.number == 0 and self._counts.max_NTsteps >= LONG and \
             not (problem.is_flat and not has_width(problem))
 
     def _is_large(self):

@@ -1,14 +1,33 @@
 """The settings of a search, which problems they are for, and what a search can conclude."""
 
+import math
+import operator
 from dataclasses import dataclass, replace
-from typing import Optional
+from typing import Any, Optional
 
 from ..model.problem import IDENTITY, Problem
 
 METHODS = {"thesis": 30, "loewner": 120}            # by name, the depth unless another is given
 LIMIT = 100000                                      # of the depth and of the digits
 
+# Why a search ended without a theorem: Proof.ended.
+HOPELESS, LENGTH, DEPTH, DOUBLES, TIME = (
+    "hopeless as seen", "limit of length", "limit of depth", "limit of doubles", "time")
 THEOREM, REGION, UNDECIDED, AS_PRINTED = "theorem", "region", "undecided", "as printed"
+
+
+def whole_number(value: Any, name: str, least: int, most: float = math.inf) -> int:
+    """The integer that an argument is, of Python's or numpy's; ValueError: it is none, or is not
+    from `least` to `most`."""
+    try:
+        number = least - 1 if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        number = least - 1
+    if not least <= number <= most:
+        raise ValueError("%s must be a whole number%s, not %r" % (
+            name, ", %d or more" % least if most == math.inf else " from %d to %d" % (least, most),
+            value))
+    return number
 
 
 @dataclass(frozen=True)
@@ -18,10 +37,10 @@ class Settings:
     Parameters
     ----------
     method
-        "thesis", the criterion of 1989 in exact decimals, or "loewner", the sharper criterion in
-        doubles with proved rounding.
+        "loewner", the sharper criterion in doubles with proved rounding, or "thesis", the criterion
+        of 1989 in exact decimals.
     depth
-        The most cuts of a prism; None: 30, or 120 with the sharper method.
+        The most cuts of a prism; None: 120, or 30 with the thesis's method.
     digits
         Decimal places of the thesis's rigorous arithmetic.
     stubborn
@@ -35,7 +54,7 @@ class Settings:
         A value is out of range, or two exclude each other.
     """
 
-    method: str = "thesis"
+    method: str = "loewner"
     depth: Optional[int] = None
     digits: int = 35
     stubborn: bool = False
@@ -47,10 +66,7 @@ class Settings:
         if self.depth is None:
             object.__setattr__(self, "depth", METHODS[self.method])
         for name, least in (("depth", 0), ("digits", 1)):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= LIMIT:
-                raise ValueError("%s must be a whole number from %d to %d, not %r"
-                                 % (name, least, LIMIT, value))
+            object.__setattr__(self, name, whole_number(getattr(self, name), name, least, LIMIT))
         for name in "stubborn", "as_printed":
             if not isinstance(getattr(self, name), bool):
                 raise ValueError("%s must be True or False, not %r" % (name, getattr(self, name)))

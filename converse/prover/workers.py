@@ -14,6 +14,7 @@ from typing import Any, Callable
 from ..storage.files import ConverseError
 from ..storage.signals import Resource, postponed
 from ..version import __version__
+from .settings import whole_number
 
 LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 ATTEMPTS = 4                        # at a task whose workers die
@@ -42,8 +43,8 @@ def check_options(jobs, executor, time_limit):
     if isinstance(time_limit, bool) or not isinstance(time_limit, (int, float)) or \
             not time_limit >= 0:
         raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
-    if jobs is not None and (isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1):
-        raise ValueError("jobs must be a whole number, 1 or more, not %r" % (jobs,))
+    if jobs is not None:
+        whole_number(jobs, "jobs", 1)
     if executor is not None and not hasattr(executor, "submit"):
         raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
 

@@ -87,9 +87,13 @@ def headline(theorem: str, restored: int, noun: str) -> str:
 
 
 def verify_text(file: Optional[Path], what: str) -> str:
-    """How to verify the file of a theorem, or how to get one: the line Verify of reports."""
-    return "converse-check " + shlex.quote(files.plain(os.fspath(file))) if file else \
-        "with -b FILE the %s is kept; converse-check FILE verifies it" % what
+    """How to verify the file of a theorem, or how to get one: the line Verify of reports.
+
+    file: its name; "": a command was given none; None: a Python program has the result."""
+    if file:
+        return "converse-check " + shlex.quote(files.plain(os.fspath(file)))
+    keeps = "save(FILE) keeps" if file is None else "with -b FILE the run keeps"
+    return "%s the %s; converse-check FILE verifies it" % (keeps, what)
 
 
 # ---- files that end with their checksum

@@ -224,7 +224,7 @@ def test_the_sharper_method(run, root, tmp_path):
     (["-b", ""], "the name of a file is empty"), ([""], "the name of the input file is empty"),
     (["-r", ""], "the name of a file is empty"), (["-b", "."], "is a directory"),
     (["-d", "\u0663"], "is not a whole number"),
-    (["-p", "40", "--method", "loewner"], "-p is of the thesis's arithmetic"),
+    (["-p", "40", "--method", "loewner"], "(-p) are of the thesis's arithmetic"),
     (["/missing/file.in"], "/missing/file.in"), (["/"], "/"),
 ])
 def test_bad_usage(run, arguments, word):
@@ -385,7 +385,8 @@ def test_nothing_that_a_terminal_obeys(run, sample, tmp_path):
 @pytest.mark.parametrize("arguments, advice", [
     (["-d", "0"], "or deeper cuts (-d 10)"), (["-d", "3"], "or deeper cuts (-d 10)"),
     (["-d", "60"], "or deeper cuts (-d 120)"),
-    (["--method", "loewner", "-d", "60000"], "or larger parameters"),
+    (["--method", "loewner", "-d", "60000"],
+     "or other parameters; neither more time nor deeper cuts"),
     ([], "not all 0, as the map without potential has invariant tori")])
 def test_advice_that_can_be_taken(run, sample, arguments, advice):
     """(Of a square no leaf is linked, which is tried for minutes else.)"""
@@ -410,10 +411,18 @@ def test_a_potential_of_ones_own(run, root, tmp_path):
 
 
 @pytest.mark.parametrize("arguments, words", [
-    ([], "--method loewner"), (["--method", "loewner", "--together"], "name a parameter")])
+    (["-p", "40"], "--method loewner"),
+    (["--method", "loewner", "--together"], "name a parameter")])
 def test_a_potential_needs_the_sharper_method(run, root, arguments, words):
     status, out, err = run(*arguments, root / "inputs" / "crossed.json")
     assert (status, out) == (2, "") and one_line(err) and words in err
+
+
+def test_the_default_method_is_one_that_can(run, root):
+    """Five lines keep that of 1989."""
+    for name, first in (("crossed.json", "THEOREM\n"), ("trig274.in", "Parameters :\n")):
+        status, out, _ = run(root / "inputs" / name)
+        assert status == 0 and out.startswith(first)
 
 
 def test_an_input_that_moves_together(run, tmp_path):

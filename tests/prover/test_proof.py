@@ -11,13 +11,16 @@ from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
-from converse import ConverseError, Counts, Problem, Proof, check, prove, read_input
+from converse import (ConverseError, Counts, Problem, Proof, Settings, StandardMap, check, prove,
+                      read_input)
 from converse.draw import plot
 from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.problem import IDENTITY
 from converse.prover import native, run, tree_search
+from converse.prover.report import verdict
 from converse.prover.tree import leaves
 from converse.storage import files
 from converse.version import __version__
@@ -333,7 +336,7 @@ def test_what_is_claimed(made_up):
         proof = made_up(tree, v=v, as_printed=as_printed)
         assert proof.conclusion == conclusion
         assert proof.no_tori == bool(proof) == (conclusion == "theorem")
-        assert len(repr(proof)) < 150 and "tree" not in repr(proof)
+        assert len(repr(proof)) < 200 and "tree" not in repr(proof)
 
 
 @pytest.mark.parametrize("name", ["a.proof", "a.proof.gz"])
@@ -634,3 +637,74 @@ def test_a_point_of_ones_own(problem, tmp_path):
 def test_a_point_that_is_none(problem, xstar, error):
     with pytest.raises(error, match="xstar"):
         prove(problem, xstar=xstar, method="thesis")
+
+
+# ---- why a search ended
+
+LINE, WEAK = (Problem(MuldoonMap(a, a, 2 * Fraction(a))) for a in ("0.3085", "0.02"))
+
+
+@pytest.mark.parametrize("source, options, why", [
+    (StandardMap(k="0.9"), {}, "hopeless as seen"), (StandardMap(k=2), {}, ""),
+    (WEAK, {"depth": 6}, "limit of depth"), (LINE, {"time_limit": 0}, "time"),
+    (LINE, {"method": "thesis", "depth": 3}, "limit of depth"), (WEAK, {}, "hopeless as seen"),
+    (MuldoonMap("1e19", 0, 0), {}, "limit of doubles")])
+def test_why_a_search_ended_is_a_value(source, options, why, tmp_path):
+    proof = prove(source, **options)
+    assert proof.ended == why and bool(why) != proof.all_decided
+    proof.save(tmp_path / "a.proof")
+    loaded = Proof.load(tmp_path / "a.proof")
+    assert loaded.ended == why and loaded == proof
+    if why:
+        ends = {"time": "before the", "hopeless as seen": "hopeless"}.get(why, "at the " + why)
+        sharper = replace(proof.settings, method="loewner")
+        text = verdict(replace(proof, settings=sharper), "")
+        assert "\nEnded      " + ends in text
+        assert ("more time (-b" in text) == (why == "time")
+        assert "larger parameters" not in text
+
+
+def test_a_range_with_circles_is_given_up_within_seconds(monkeypatch, tmp_path):
+    """Cuts around the circles would go on for hours.  The end and its reason are saved, and the
+    checker knows the field; a stubborn search goes on."""
+    monkeypatch.setattr(run, "MANY_TRIES", 1000)
+    path = tmp_path / "a.proof"
+    proof = prove(StandardMap(k=("0.5", "1")), backup=path)
+    assert proof.ended == "hopeless as seen" and 1000 <= proof.counts.tries < 100_000
+    assert "U" not in proof.tree and "\nhopeless: yes\n" in path.read_text()
+    with pytest.raises(check.Rejected, match="goes on with the search"):
+        check.verify(path)
+    again = prove(resume=path)
+    assert again.hopeless and again.restored
+    went_on = prove(resume=path, stubborn=True, time_limit=1)
+    assert went_on.ended in ("time", "hopeless as seen") and went_on.seconds > proof.seconds
+
+
+def test_a_narrower_range_is_advised_where_cuts_are_along_the_parameter(made_up):
+    for tree, advised in ("022P", True), ("002P", False):
+        text = made_up(tree, method="loewner").report()
+        assert ("To try     a narrower range of parameters, or more time (" in text) == advised
+
+
+# ---- values
+
+def test_a_proof_is_a_value(problem):
+    """Equal ones have one hash, and the text of one tells its map and range."""
+    proof = prove(StandardMap(k=("2", "2.5")))
+    assert len({proof, prove(StandardMap(k=("2", "2.5")))}) == 1
+    assert "standard map" in repr(proof) and "2.5" in repr(proof)
+
+
+def test_whole_numbers_are_those_of_numpy_too():
+    proof = prove(LINE, depth=np.int64(50), jobs=np.int8(1))
+    assert proof == prove(LINE, depth=50) and type(proof.depth) is int
+    assert prove(LINE, digits=np.int32(20)).digits == 20
+    for options in {"depth": True}, {"jobs": 1.0}, {"jobs": 0}, {"digits": "9"}, {"depth": -1}:
+        with pytest.raises(ValueError, match="%s must be a whole number" % [*options][0]):
+            prove(LINE, **options)
+
+
+def test_the_method_of_settings_is_that_of_prove():
+    assert Settings().method == prove(LINE).method == "loewner"
+    with pytest.raises(ValueError, match=r"digits \(-p\) are of the thesis's arithmetic"):
+        prove(LINE, method="loewner", digits=20)

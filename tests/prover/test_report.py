@@ -55,7 +55,7 @@ def test_the_sharper_method_in_its_own_words(made_up):
         "  J1' = J1 + b cos y1 + c cos(y0 + y1),\n"
         "  has no invariant torus J = P + S'(y) over both angles, P constant, S periodic and C1\n"
         "  for every a in [0.30725, 0.30975], b in [0.30725, 0.30975], c in [0.6145, 0.6195].\n\n"
-        "Verify     with -b FILE the proof is kept; converse-check FILE verifies it\n"
+        "Verify     save(FILE) keeps the proof; converse-check FILE verifies it\n"
         "Input      > A line.\n")
     for words in ("converse " + __version__, "x* = (1.5, 1.5)", "B = 1.25: no eigenvalue",
                   "156 prisms proved, 11 skipped by symmetry, cut 13 times at most; orbits of up "
@@ -125,13 +125,14 @@ def test_undecided(made_up, tree, stubborn, number, deepest, ended):
         assert bool(re.search(r"\nThe first of them : [0-9.]+ < v\[0\] / pi < [0-9.]+, ",
                               text)) == (
             number > 0 and not as_printed)
-        assert ("--method loewner" in text) == (not as_printed)
+        assert ("method='loewner'" in text) == (not as_printed)
+        assert ("--method loewner" in verdict(proof, "")) == (not as_printed)
 
 
 @pytest.mark.parametrize("tree, words", [
     ("0PU", "Undecided  1 prism, the deepest cut 1 time\n           the first of them: "),
-    ("00U", "\nEnded      before the whole region was examined\nTo try "),
-    ("", "To try     more time, from a backup"),
+    ("00U", "\nEnded      at the limit of doubles: "),
+    ("", "To try     more time (save(FILE), then prove(resume=FILE))\n"),
 ])
 def test_undecided_by_the_sharper_method(made_up, tree, words):
     text = made_up(tree, method="loewner", stubborn=tree == "0PU").report()
@@ -154,10 +155,10 @@ def test_where_x_star_may_be_the_cause(monkeypatch):
     (c, _), (h, _) = stuck.undecided[0].centre, stuck.undecided[0].half
     assert abs(Fraction(low) - c + h) <= h / 100 and abs(Fraction(high) - c - h) <= h / 100
     assert "one of them is as small as doubles can tell: " in text
-    assert "\nTo try     another x* (--xstar X0 X1), or larger parameters\n" in text
+    assert "\nTo try     another x* (xstar=(X0, X1)), or other parameters\n" in text
     wide = Problem(SymplecticMap(waves, ["0.6", "0.2"], [["0.00001", 0]]))
-    assert ", or a smaller range of parameters, or larger parameters\n" in prove(
-        wide, method="loewner", xstar=("1.856", "0")).report()
+    assert ", or a narrower range of parameters, or other parameters" in verdict(prove(
+        wide, method="loewner", xstar=("1.856", "0")), "a.proof")
     assert prove(problem, method="loewner", xstar=("1.836", "0")).no_tori
     assert "x* (" not in prove(problem, method="loewner", xstar=("1.856", "0"), depth=5).report()
     point = prove(Problem(SymplecticMap(waves, ["0.06", "0.02"]), v0=Fraction(9, 8)),
@@ -166,7 +167,8 @@ def test_where_x_star_may_be_the_cause(monkeypatch):
 
 
 def test_amplitudes_that_are_too_large_are_to_become_smaller():
-    for amplitude, words in (("1e19", "amplitudes below 2^60, near 10^18: "), ("0.1", "larger")):
+    for amplitude, words in (
+            ("1e19", "amplitudes below 2^60, near 10^18: "), ("0.1", "other parameters")):
         proof = prove(Problem(SymplecticMap([(1, 0), (1, 1)], [amplitude, amplitude])), depth=0)
         assert not proof.no_tori and "\nTo try     " + words in proof.report()
 

@@ -260,7 +260,7 @@ def test_no_symmetry_where_the_start_is_off_the_diagonal():
     from converse.prover.tree_search import MANY
 
     for xstar, skips in ((("0.82", "0.82"), True), (("0.82", "0.83"), False)):
-        search = Search(Task(line("0.0275"), Settings(digits=20), xstar))
+        search = Search(Task(line("0.0275"), Settings("thesis", digits=20), xstar))
         assert search.prepare(Stop())
         counts = search.grow([(*ROOT, 0)], math.inf, MANY, Stop(), False).counts
         assert counts.proved > 0 and (counts.symmetric > 0) == skips
@@ -271,7 +271,7 @@ def test_no_symmetry_where_the_start_is_off_the_diagonal():
 def core_search(xstar=None, depth=30, **settings):
     from converse.prover.native import Search, Settings, Task
 
-    search = Search(Task(line("0.0275"), Settings(depth=depth, **settings), xstar))
+    search = Search(Task(line("0.0275"), Settings("thesis", depth=depth, **settings), xstar))
     assert search.prepare(None)
     return search
 
@@ -347,7 +347,7 @@ def test_stopped_in_the_middle_of_a_prism():
 def test_a_search_whose_setting_up_was_stopped_is_good_for_nothing():
     from converse.prover.native import Search, Settings, Stop, Task, ffi, lib
 
-    search = Search(Task(line("0.0275"), Settings(digits=20000)))
+    search = Search(Task(line("0.0275"), Settings("thesis", digits=20000)))
     token = Stop()
     token.set()
     assert not search.prepare(token)
