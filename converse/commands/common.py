@@ -20,7 +20,7 @@ from ..storage.files import ConverseError, NotSaved, plain
 from ..storage.signals import ENDING, interruptible
 
 BAD, ENDED_BY = 2, 128                  # exit statuses; the signal's number is added to the second
-REFRESH_SECONDS = 0.25                  # between two texts of a ProgressLine
+REFRESH_SECONDS, LINE_SECONDS = 0.25, 60.0       # between texts of progress on a terminal; of lines
 
 
 # ---- arguments
@@ -95,13 +95,15 @@ def seconds(text):
 
 
 def add_worker_options(p, what):
-    """Adds the options --jobs, --dask and --time-limit of a command that works on several `what`
-    at a time."""
+    """Adds the options --jobs, --dask, --time-limit and --cpu-limit of a command that works on
+    several `what` at a time."""
     p.add_argument("--jobs", type=whole_number(1), metavar="N",
                    help="work on N %s at a time (default: one per core)" % what)
     p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
-                   help="stop after about this time; -r continues")
+                   help="stop after about this time on the clock; -r continues")
+    p.add_argument("--cpu-limit", type=seconds, default=math.inf, metavar="SECONDS",
+                   help="stop after about this time of this process's processors")
 
 
 TOGETHER = "a, b and c move together along the segment from all lower to all upper ends"
@@ -133,13 +135,14 @@ def tell(message, command="converse"):
 
 class ProgressLine:
     """The progress of a command: on a terminal one line of stderr, rewritten a few times a second;
-    elsewhere nothing.  It is a context manager, which clears the line in the end."""
+    elsewhere a line a minute.  It is a context manager, which clears the line in the end."""
 
     length = 0                          # of the line that is on the terminal now, whoever wrote it
 
-    def __init__(self, wanted=True):
-        self.shown, self.due = wanted and sys.stderr.isatty(), 0.0
+    def __init__(self, command="converse", wanted=True):
+        self.command, self.wanted, self.shown = command, wanted, wanted and sys.stderr.isatty()
         self.began = time.monotonic()
+        self.due = 0.0 if self.shown else self.began + LINE_SECONDS
 
     def __enter__(self):
         return self
@@ -150,11 +153,14 @@ class ProgressLine:
     def __call__(self, words):
         """Shows the time that passed and the text words(), which is called only when it is due."""
         now = time.monotonic()
-        if self.shown and now >= self.due:
-            self.due = now + REFRESH_SECONDS
+        if self.wanted and now >= self.due:
+            self.due = now + (REFRESH_SECONDS if self.shown else LINE_SECONDS)
             passed = int(now - self.began)
-            self._write("%d:%02d:%02d %s" % (
-                passed // 3600, passed // 60 % 60, passed % 60, words()))
+            text = "%d:%02d:%02d %s" % (passed // 3600, passed // 60 % 60, passed % 60, words())
+            if self.shown:
+                self._write(text)
+            else:
+                tell(text, self.command)
 
     @staticmethod
     def _write(text):

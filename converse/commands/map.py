@@ -102,13 +102,14 @@ def _search(options, kept):
         if not problem.full_torus:
             raise ConverseError("the input names a part of the torus (v0, v1); leave it out")
         family = problem.map
-    with ProgressLine() as line, executor_of(options) as executor:
+    with ProgressLine(COMMAND) as line, executor_of(options) as executor:
         def tell(text):
             line.clear()
             say(text + "\n")
 
         return explore(family, path=kept, resume=options.restore is not None, jobs=options.jobs,
-                       executor=executor, time_limit=options.time_limit, tell=tell,
+                       executor=executor, time_limit=options.time_limit,
+                       cpu_limit=options.cpu_limit, tell=tell,
                        progress=lambda diagram: line(lambda: progress_text(diagram)), **given)
 
 

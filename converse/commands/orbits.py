@@ -239,7 +239,7 @@ def find_states(options):
     start = _start(options, potential, straight(potential, p, q), eps[0])
     eps = reached(potential, eps, start.eps)
     say(header(start))
-    with ProgressLine() as line:
+    with ProgressLine(COMMAND) as line:
         found = _Finding(options, line)
         try:
             follow(potential, p, q, eps, start=start,

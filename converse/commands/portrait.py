@@ -70,11 +70,12 @@ def run(options):
 
     problem = None if options.restore else read_problem(options.input, COMMAND)
     rotations = _rotations(options.rotation)
-    with ProgressLine() as line, executor_of(options) as executor:
+    with ProgressLine(COMMAND) as line, executor_of(options) as executor:
         found = portray(problem, path=path, columns=options.columns or COLUMNS,
                         depth=options.depth or DEPTH, strips=not options.lines,
                         resume=options.restore is not None, jobs=options.jobs,
                         executor=executor, time_limit=options.time_limit,
+                        cpu_limit=options.cpu_limit,
                         progress=lambda *done: line(lambda: progress_text(*done)))
     say(found.report(path or ""))
     if options.graphics is not None:

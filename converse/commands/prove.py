@@ -156,11 +156,12 @@ def run(options):
     elif options.input or options.together:
         raise ConverseError("-r continues a run as it was asked for; leave out the input and "
                             "--together")
-    with ProgressLine(not options.verbose) as line, executor_of(options) as executor:
+    with ProgressLine(wanted=not options.verbose) as line, executor_of(options) as executor:
         progress = Progress(options, line)
         proof = prove(problem, xstar=options.xstar, jobs=options.jobs, executor=executor,
                       backup=options.backup, resume=options.restore,
-                      time_limit=options.time_limit, on_begin=progress.begin,
+                      time_limit=options.time_limit, cpu_limit=options.cpu_limit,
+                      on_begin=progress.begin,
                       progress=progress, on_leaf=on_leaf if options.verbose else None, **given)
         if not options.begun:           # the time limit came before the search
             progress(0.0, proof.counts)

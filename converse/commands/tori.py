@@ -107,9 +107,10 @@ class _Steps(ProgressLine):
         self._show(step)
 
     def _show(self, text):
-        self.due = 0.0
-        super().__call__(lambda: text)
-        if not self.shown and time.monotonic() > self.began + QUIET_SECONDS:
+        if self.shown:
+            self.due = 0.0
+            super().__call__(lambda: text)
+        elif time.monotonic() > self.began + QUIET_SECONDS:
             tell(text, COMMAND)
 
     def _repeat(self):

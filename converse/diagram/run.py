@@ -8,7 +8,7 @@ from typing import Callable, Optional
 from ..model.exact import Number, exact
 from ..model.map import SymplecticMap
 from ..prover import native
-from ..prover.workers import Filling, WorkerPool, check_options
+from ..prover.workers import Deadline, Filling, WorkerPool, check_options
 from ..storage.backup import Backup
 from ..storage.files import ConverseError, Path
 from ..storage.signals import interruptible
@@ -24,6 +24,7 @@ POINTS_A_SECOND = 2 * 10 ** 6           # of orbits, about: what a second of the
 def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = None,
             resume: bool = False, budget: Number = BUDGET, jobs: Optional[int] = None,
             executor: Optional[concurrent.futures.Executor] = None, time_limit: float = math.inf,
+            cpu_limit: float = math.inf,
             tell: Optional[Callable[[str], None]] = None,
             progress: Optional[Callable[[Diagram], None]] = None) -> Diagram:
     """Looks for proofs along one or two parameters of a family of maps.
@@ -43,8 +44,9 @@ def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = No
     jobs, executor
         The number of tasks at a time, by default one per core; the executor that works on them, by
         default threads of this process.  The result does not depend on them.
-    time_limit
-        The search ends after about this number of seconds.
+    time_limit, cpu_limit
+        The search ends after about this number of seconds on the clock, or of this process's
+        processors.
     tell
         tell(text) is called with a line about each proof as soon as it is found.
     progress
@@ -61,7 +63,8 @@ def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = No
     ConverseError, MemoryError
         The run ended; what was proved is in the file.
     """
-    check_options(jobs, executor, time_limit)
+    check_options(jobs, executor)
+    deadline = Deadline(time_limit, cpu_limit)
     seconds = exact(budget)
     if seconds <= 0:
         raise ValueError("the budget is a number of seconds above 0, not %s" % (budget,))
@@ -76,7 +79,7 @@ def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = No
             raise TypeError("there must be a family, or the file of a diagram to continue")
         if len(diagram.ranges) == 1 and not diagram.members:
             diagram.sides = sides_of(diagram.family)
-        with Filling(diagram, backup, WorkerPool(executor, jobs, native.Stop()), time_limit,
+        with Filling(diagram, backup, WorkerPool(executor, jobs, native.Stop()), deadline,
                      lambda: progress and progress(diagram)) as filling:
             cells.search(diagram, filling, int(seconds * POINTS_A_SECOND),
                          tell or (lambda text: None))

@@ -27,7 +27,7 @@ from ..storage.signals import interruptible
 from ..version import __version__
 from . import native, tree
 from .settings import Settings
-from .workers import Filling, WorkerPool, check_options
+from .workers import Deadline, Filling, WorkerPool, check_options
 
 FIRST_LINE = "converse portrait 1"
 FIELDS = "program", "strip", "even about", "depth", "columns", "undecided"
@@ -337,7 +337,7 @@ def _even(problem):
 def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optional[Path] = None,
             columns: int = 600, depth: int = 15, strips: bool = True, resume: bool = False,
             jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
-            time_limit: float = math.inf,
+            time_limit: float = math.inf, cpu_limit: float = math.inf,
             progress: Optional[Callable[[int, Portrait], None]] = None) -> Portrait:
     """Proves where in phase space a map of one angle has no rotational invariant circles.
 
@@ -359,8 +359,9 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
         Whether to continue the portrait of the file: its columns are kept.
     jobs, executor
         Columns at a time, by default one per core; whose workers they are, by default threads.
-    time_limit
-        The search ends after about this number of seconds.
+    time_limit, cpu_limit
+        The search ends after about this number of seconds on the clock, or of this process's
+        processors.
     progress
         progress(columns done, portrait) is called a few times a second.
 
@@ -371,7 +372,8 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
     ConverseError
         The file cannot be used; what was found is in it.
     """
-    check_options(jobs, executor, time_limit)
+    check_options(jobs, executor)
+    deadline = Deadline(time_limit, cpu_limit)
     asked = None if source is None else Portrait.new(Problem.of(source), columns, depth, strips)
     with interruptible(), Backup(path, resumed=path if resume else None) as backup:
         if path is not None and resume and asked is None:
@@ -394,7 +396,7 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
 
         tasks = ((x, column, portrait.patch, portrait.strip, portrait.depth, x)
                  for x in portrait.stars if x not in portrait.found)
-        with Filling(portrait, backup, WorkerPool(executor, jobs, native.Stop()), time_limit,
+        with Filling(portrait, backup, WorkerPool(executor, jobs, native.Stop()), deadline,
                      look) as filling:
             filling.work(lambda: next(tasks, None), take)
     return portrait

@@ -25,7 +25,7 @@ from .resume import continued, counted
 from .settings import LENGTH, Settings
 from .starts import MAX_PROOF_LEAVES, has_width, plan
 from .tree_search import OLD, TreeSearch
-from .workers import LOOK_SECONDS, WorkerPool, check_options
+from .workers import LOOK_SECONDS, Deadline, WorkerPool, check_options
 
 LONG = 400                              # points: of a proved prism's orbit
 # Tries, after which it is asked whether thin prisms resist: with waves of one combination of the
@@ -39,7 +39,8 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
           xstar: Optional[Tuple[Number, Number]] = None,
           jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
           backup: Optional[Path] = None, resume: Union[Proof, Path, None] = None,
-          time_limit: float = math.inf, on_begin: Optional[Callable[[Proof], None]] = None,
+          time_limit: float = math.inf, cpu_limit: float = math.inf,
+          on_begin: Optional[Callable[[Proof], None]] = None,
           progress: Optional[Callable[[float, Counts], None]] = None,
           on_leaf: Optional[Callable[[tree.Leaf, int], None]] = None) -> Proof:
     """Tries to prove that a map, or a family of maps, has no invariant tori.
@@ -64,8 +65,9 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
         An unfinished proof, or its file, to continue with its map and its settings; `depth` may
         be greater, and `stubborn` differ.  A file is also kept up to date, unless `backup` names
         another.
-    time_limit : float
-        Seconds of this run after which, about, the search is left as it is.
+    time_limit, cpu_limit : float
+        Seconds of this run, on the clock or of this process's processors, after which, about, the
+        search is left as it is.
     on_begin : callable, optional
         on_begin(proof) is called once, with the proof as it is before the search.
     progress : callable, optional
@@ -97,7 +99,8 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
     given: Dict[str, Any] = {name: value for name, value in (
         ("method", method), ("depth", depth), ("digits", digits), ("stubborn", stubborn),
         ("as_printed", as_printed)) if value is not None}
-    check_options(jobs, executor, time_limit)
+    check_options(jobs, executor)
+    deadline = Deadline(time_limit, cpu_limit)
     file = None if resume is None or isinstance(resume, Proof) else resume
     name = "the proof to resume" if file is None else os.fspath(file)
     if resume is not None:
@@ -122,7 +125,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
         if on_begin is not None:
             on_begin(before)
         try:
-            return _Run(before, backup_file, jobs, executor, time_limit, progress, on_leaf).run()
+            return _Run(before, backup_file, jobs, executor, deadline, progress, on_leaf).run()
         except native.WrongTree as error:
             raise ConverseError("%s: %s; use an intact copy or start anew"
                                 % (name, error)) from None
@@ -156,12 +159,12 @@ class _Run:
     The trees are grown one after the other.  Where a tree leaves prisms undecided, further ones are
     added to the list."""
 
-    def __init__(self, before, backup, jobs, executor, time_limit, progress, on_leaf):
+    def __init__(self, before, backup, jobs, executor, deadline, progress, on_leaf):
         self.proof = replace(before, hopeless=False)
         self.backup, self.jobs, self.executor = backup, jobs, executor
         self.progress, self.on_leaf = progress, on_leaf
         self.began, self.seconds_before = time.monotonic(), before.seconds
-        self.end = self.began + time_limit
+        self.deadline = deadline
         self.examined = self.share = 0.0    # before the tree that is grown now; of all, told last
         self.number, self.search = 0, None      # of that tree, and its search
         self.counts = before.counts             # when that began
@@ -330,7 +333,7 @@ class _Run:
     # ---- what is told
 
     def _seconds_left(self):
-        return self.end - time.monotonic()
+        return self.deadline.left()
 
     def _seconds_left_told(self):
         """This is asked for again and again while no tree grows."""

@@ -38,11 +38,24 @@ def count_workers(executor=None):
         return os.cpu_count() or 1
 
 
-def check_options(jobs, executor, time_limit):
+class Deadline:
+    """The end of a run, of which this is the beginning: after time_limit seconds on the clock, or
+    cpu_limit seconds of this process's processors, whichever comes first.  ValueError: a limit is
+    not a number of seconds."""
+
+    def __init__(self, time_limit, cpu_limit):
+        for name, limit in ("time_limit", time_limit), ("cpu_limit", cpu_limit):
+            if isinstance(limit, bool) or not isinstance(limit, (int, float)) or not limit >= 0:
+                raise ValueError("%s is a number of seconds, not %r" % (name, limit))
+        self.end, self.cpu_end = time.monotonic() + time_limit, time.process_time() + cpu_limit
+
+    def left(self):
+        """How many seconds are left; 0 or less: none."""
+        return min(self.end - time.monotonic(), self.cpu_end - time.process_time())
+
+
+def check_options(jobs, executor):
     """TypeError, ValueError: one of these arguments of prove(), portray() or explore() is wrong."""
-    if isinstance(time_limit, bool) or not isinstance(time_limit, (int, float)) or \
-            not time_limit >= 0:
-        raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
     if jobs is not None:
         whole_number(jobs, "jobs", 1)
     if executor is not None and not hasattr(executor, "submit"):
@@ -255,17 +268,17 @@ class WorkerPool(Resource):
 class Filling(Resource):
     """A run that adds to a result by many tasks: a context, at whose end the result is saved.
 
-    result: with seconds, sha256 and save(); backup: of it; pool: a WorkerPool; time_limit: in
-    seconds; look() is called a few times a second."""
+    result: with seconds, sha256 and save(); backup: of it; pool: a WorkerPool; look() is called a
+    few times a second."""
 
-    def __init__(self, result, backup, pool, time_limit, look):
+    def __init__(self, result, backup, pool, deadline, look):
         self.result, self.backup, self.pool, self.look = result, backup, pool, look
-        self.began, self.end = (time.monotonic() + x for x in (-result.seconds, time_limit))
+        self.began, self.deadline = time.monotonic() - result.seconds, deadline
 
     @property
     def late(self):
         """Is the time up?"""
-        return time.monotonic() >= self.end
+        return self.deadline.left() <= 0
 
     def acquire(self):
         self.pool.acquire()

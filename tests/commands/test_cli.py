@@ -6,11 +6,13 @@ import os
 import re
 import subprocess
 import sys
+import time
 
 import pytest
 from conftest import COMMAND
 
 from converse import Proof, check
+from converse.commands import common
 from converse.commands.prove import main
 from converse.version import __version__
 
@@ -416,6 +418,26 @@ def test_a_potential_of_ones_own(run, root, tmp_path):
 def test_a_potential_needs_the_sharper_method(run, root, arguments, words):
     status, out, err = run(*arguments, root / "inputs" / "crossed.json")
     assert (status, out) == (2, "") and one_line(err) and words in err
+
+
+def test_without_a_terminal_a_line_a_minute_tells_the_progress(run, sample, monkeypatch):
+    """Each with the name of the command; none in a run of less than a minute, or beside -t."""
+    assert run(sample)[2] == ""
+    monkeypatch.setattr(common, "LINE_SECONDS", 0.0)
+    lines = run(sample)[2].splitlines()
+    assert len(lines) > 1 and run("-t", sample)[2] == ""
+    for line in lines:
+        assert re.match(r"converse: 0:\d\d:\d\d [\d,]+ prisms proved, .* x torus done", line)
+
+
+def test_a_limit_of_processor_time(run, root, monkeypatch):
+    """The clock, which is faster on a machine that is shared, does not count."""
+    began = time.process_time()
+    status, out, _ = run("--cpu-limit", "0.5", "--jobs", "1", root / "inputs" / "standard-9717.in",
+                         "--method", "loewner")
+    assert status == 1 and "\nEnded      before the whole region was examined" in out
+    assert 0.4 < time.process_time() - began < 5
+    assert run("--cpu-limit", "x", root / "inputs" / "trig274.in")[0] == 2
 
 
 def test_the_default_method_is_one_that_can(run, root):

@@ -458,8 +458,8 @@ def test_a_long_prism_obeys(problem, proof, monkeypatch):
 
     monkeypatch.setattr(native, "grow", tells)
     monkeypatch.setattr(tree_search, "TASK_SECONDS", PATIENCE)   # it is waited for
-    monkeypatch.setattr(run._Run, "end", property(
-        lambda self: -math.inf if up.is_set() else math.inf, lambda *_: None), raising=False)
+    monkeypatch.setattr(run._Run, "_seconds_left",
+                        lambda self: -math.inf if up.is_set() else math.inf)
     result = prove(problem, digits=20000, jobs=1)
     assert not result.all_decided and result.tree == "".join(grown) != "" == grown[-1]
 
