@@ -12,7 +12,7 @@ SOURCES = ["arith/apm", "arith/special", "arith/guard", "arith/machine",
            "loewner/engine", "loewner/engine_avx2", "loewner/engine_avx512",
            "model/patch", "model/region", "model/stationary", "model/torus",
            "search/setup", "search/tree", "search/lookahead",
-           "orbits/potential", "orbits/band", "orbits/relax"]
+           "orbits/potential", "orbits/band", "orbits/relax", "orbits/average"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 
 # The flags are part of the proof: no fused, reordered or extended floating-point arithmetic.

@@ -57,3 +57,21 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
    one in round r was not positive definite: then the orbit run through r + 1 times is not a
    minimum, since its Hessian, with the other points held fixed, has the same pivots up to there. */
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3]);
+
+/* The force of a Fourier sum, for eps = 1: -grad V(x) is the sum over j of
+   k_j size[j] sin(2 pi (k_j.x + phase[j])), where k_j is k[2j], k[2j+1]; k[2j+1] is 0 if n = 1. */
+typedef struct {
+    int n, waves;
+    const int *k;
+    const double *size, *phase;
+} cv_waves;
+
+/* Follows the orbits of m momenta p over x for 2 points steps.  means[i]: of the steps
+   x_{j+1} - x_j of orbit i in its first half and in its second.  weight: of the steps of a half,
+   with the sum 1.  On an invariant torus both means are about the rotation vector. */
+void cv_rotations(const cv_waves *v, const double x[2], long m, const double (*p)[2], long points,
+                  const double *weight, double (*means)[2][2]);
+
+/* The points x_0 = x, x_1, ... of the orbit of one of these momenta, not reduced modulo 1. */
+void cv_lift(const cv_waves *v, const double x[2], const double p[2], long points,
+             double (*lift)[2]);

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from converse.model.exact import exact
 from converse.storage.files import plain
+from converse.tori.nearest import triangles
 
 
 class Mediant(NamedTuple):
@@ -40,19 +41,6 @@ def _sum(a, b):
     return tuple(x + y for x, y in zip(a, b))
 
 
-# Triangles are (A, B, C), the right angle at B; points are triples (p0, p1, q).
-LOWER = (1, 0, 1), (0, 0, 1), (0, 1, 1)
-UPPER = (1, 0, 1), (1, 1, 1), (0, 1, 1)
-
-
-def halves(triangle):
-    """The two triangles that the mediant of the hypotenuse, their new right angle, cuts a triangle
-    into: the left one and the right one."""
-    a, b, c = triangle
-    middle = _sum(a, c)
-    return (b, middle, a), (c, middle, b)
-
-
 def triangle(w):
     """The Mediants of the Farey triangles that contain the vector w: the first is (1, 1)/2, the
     last w itself, if the triangles ever meet it."""
@@ -68,22 +56,3 @@ def triangle(w):
         yield Mediant((p0, p1), q, address)
         if (p0, p1) == (w0 * q, w1 * q):
             return
-
-
-def triangles(w0, w1):
-    """The Farey triangles that contain a vector of the unit square, each a half of the one before,
-    without end: (corners, address)."""
-    cell, address = UPPER if w0 + w1 >= 1 else LOWER, ""
-    while True:
-        yield cell, address
-        a, b, c = cell
-        middle = _sum(a, c)
-        side = determinant(b, middle, (w0, w1, 1)) * determinant(b, middle, c)
-        cell = halves(cell)[side >= 0]
-        address += "lr"[side >= 0]
-
-
-def determinant(a, b, c):
-    """Of three points; between the points that a triangle of the scheme has it is 1 or -1."""
-    return (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
-            + a[2] * (b[0] * c[1] - b[1] * c[0]))

@@ -16,6 +16,7 @@ from .common import (MAP, SIGNALS, TOGETHER, Parser, ProgressLine, check_figure,
 
 COMMAND = "converse-tori"
 ENDING = ending(
+    "converse-tori prove standard-k090.in -b k090.torus\n"
     "converse-tori prove standard-k090.in --rotation golden -b golden.torus\n"
     "converse-check golden.torus\n"
     "(the input is one of those that converse --list-inputs names)",
@@ -42,7 +43,7 @@ def _positive(text):
 
 def parser():
     p = Parser(prog=COMMAND, epilog=ENDING, description=(
-        "Proves that %s, has an invariant torus with a given rotation vector, a graph J = P + "
+        "Proves that %s, has an invariant torus, a graph J = P + "
         "S'(y)." % MAP))
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     _prove_parser(p.add_subparsers(metavar="COMMAND", required=True))
@@ -58,8 +59,11 @@ def _prove_parser(commands):
     p.add_argument("input", nargs="?", metavar="FILE", help="input file, the thesis's or "
                    "JSON; standard input if it is - or left out; one parameter may have a range")
     p.add_argument("--rotation", metavar="ROTATION", help=(
-        "the rotation vector in turns: golden, silver, spiral, seven, T49, V1, V2, or a polynomial "
-        "and elements of the field of its largest real root t, such as 't^2+t-1: t'"))
+        "the rotation vector in turns: decimals, near which a vector with good small divisors is "
+        "taken, such as 0.2077 or '0.2742, 0.2802'; a continued fraction, such as '[0; 4, 1, 4, "
+        "...]', that ends in ones; golden, silver, spiral, seven, T49, V1, V2; or a polynomial "
+        "and elements of the field of its largest real root t, such as 't^2+t-1: t'; default: that "
+        "of the most regular orbits whose torus has the fewest modes"))
     p.add_argument("--together", action="store_true",
                    help=TOGETHER)
     p.add_argument("-b", "--backup", metavar="FILE",
@@ -172,7 +176,7 @@ def _left(options):
 
 
 def _rotation(options, potential, start):
-    from .. import tori
+    from ..tori.nearest import rotation_of
 
     if start is not None and start.dimension != potential.dimension:
         raise ConverseError("%s: its map has %d angle%s, and this one %d; start from another "
@@ -180,10 +184,8 @@ def _rotation(options, potential, start):
                                 options.restore, start.dimension, "s" * (start.dimension - 1),
                                 potential.dimension))
     if options.rotation is not None:
-        return tori.read_rotation(options.rotation, potential.dimension)
-    if start is None:
-        raise ConverseError("which torus? Give --rotation, such as golden or T49")
-    return start.rotation
+        return rotation_of(options.rotation, potential.dimension)
+    return start and start.rotation
 
 
 def prove_torus(options):

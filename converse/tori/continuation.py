@@ -1,5 +1,6 @@
 """Continuation of a torus in the amplitudes of the potential, by Newton's method in floating-point
-numbers, from a map where it is known: without potential, every torus is there.
+numbers, from a map where it is known: without potential, every torus is there.  Or a torus is made
+of an orbit that lies on it (regular.py), where no continuation leads.
 
 The number of modes follows the decay of the coefficients, in two directions at different rates.
 On the way the number is as large as the next step needs; at the end it is as large as doubles can
@@ -7,7 +8,7 @@ tell. Small divisors magnify the rounding errors of high modes. So an error belo
 computation counts as zero.
 """
 
-from math import inf, isfinite, log
+from math import inf, log
 from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -15,7 +16,8 @@ import numpy as np
 from ..model.potential import FourierSum
 from ..storage.files import ConverseError
 from .effort import LAYER_BYTES, REFINING_BYTES, SOLVING, free_memory, some
-from .newton import EPSILON, Mesh, default_frame
+from .newton import EPSILON, Mesh, best_frame, default_frame
+from .regular import Orbit, Orbits
 from .rotation import Rotation
 from .torus import Torus, decay
 
@@ -32,6 +34,14 @@ USEFUL, STALLED = 1e-7, 1e-12   # Newton's method may end at the first; at the s
 ENLARGED = 8                # This often the number of modes is raised.
 HISTORY = 4                 # The next torus is extrapolated from the last HISTORY ones.
 TOO_LARGE = "too large"
+FRAMED = 1 << 11            # On a mesh of so many points the frame is chosen.
+# The torus of an orbit begins with modes up to REACH, by the number of angles.  Where Newton's
+# method stalls, it has GROWTH times as many in each direction.  It is given up if the error, which
+# is at most SEEN, does not become DOWN times as large in WEARY rounds.
+REACH, GROWTH, SEEN, DOWN, WEARY = {1: 128, 2: 8}, {1: 2.0, 2: 1.5}, 1e-2, 0.7, 4
+# The break-up is estimated from the last FITTED tori, if the norm of the second derivatives grows
+# like a power of the distance to within MISFIT, and if the last FEWER say the same to AGREED.
+FITTED, FEWER, MISFIT, AGREED = 6, 4, 0.02, 0.3
 
 
 class NotFound(ConverseError):
@@ -40,7 +50,7 @@ class NotFound(ConverseError):
     Attributes
     ----------
     reached
-        The last torus is at this part of the way to the amplitudes, in [0, 1].  The way through a
+        The last torus is at this part of the way to the parameters, in [0, 1].  The way through a
         range begins at its lower end.
     amplitude
         The amplitude of each wave there.
@@ -58,6 +68,7 @@ class Found(NamedTuple):
     seen -- the modes whose coefficients are above the noise.
     rates -- These coefficients decay so in each mode number.
     reach -- log of the largest coefficient over the least that count, with some to spare.
+    bend -- the norm of the second derivatives
     """
 
     part: float
@@ -68,18 +79,34 @@ class Found(NamedTuple):
     seen: np.ndarray
     rates: np.ndarray
     reach: float
+    bend: float = 0.0
+
+
+def place(named: Sequence[Tuple[str, float]], amplitude: np.ndarray) -> str:
+    """Where a map is, in words: by its parameters, or else by its amplitudes."""
+    if named:
+        return ", ".join("%s = %.6g" % each for each in named)
+    return "the amplitudes " + ", ".join("%.6g" % float(p) for p in amplitude)
 
 
 class Way:
-    """From amplitudes for which a torus is known to those asked for, one for each wave."""
+    """From amplitudes for which a torus is known to those asked for, one for each wave.
+
+    named -- (name, value at the beginning, value at the end) of the parameters that change"""
 
     def __init__(self, potential: FourierSum, rotation: Rotation, points: int,
                  first: np.ndarray, last: np.ndarray,
                  tell: Callable[[str], None] = lambda words: None,
-                 memory: Optional[int] = None) -> None:
+                 memory: Optional[int] = None,
+                 named: Sequence[Tuple[str, float, float]] = ()) -> None:
         self.potential, self.rotation, self.frame = potential, rotation, default_frame(potential)
-        self.points, self.first, self.last = points, first, last
-        self.tell, self.memory = tell, memory
+        self.points, self.first, self.last, self.chosen = points, first, last, False
+        self.tell, self.memory, self.named = tell, memory, named
+
+    def place(self, part: float) -> str:
+        """Where a part of the way leads, in words."""
+        return place([(name, low + part * (high - low)) for name, low, high in self.named],
+                     self.amplitude(part))
 
     def amplitude(self, part: float) -> np.ndarray:
         return self.first + part * (self.last - self.first)
@@ -92,23 +119,62 @@ class Way:
         """The torus at the end of the way.  `start` is the torus at its beginning, by default the
         straight one of the map without potential."""
         known = [self._straight() if start is None else start._replace(part=0.0)]
-        step = FIRST_STEP if start is None else 1.0
+        step, bends = FIRST_STEP if start is None else 1.0, []
         while known[-1].part < 1:
             last = known[-1]
-            if not self._hopeful(known):
-                raise self._not_found(known)
             part = 1.0 if last.part + 1.25 * step >= 1 else last.part + step
             found = self._solved(part, last, _extrapolated(known, part))
             if isinstance(found, Found) and part == 1:
                 found = self._solved(part, found, found.u, 0.0)
             if isinstance(found, Found):
-                known = [*known[1 - HISTORY:], found]
+                known = [*known[1 - HISTORY:], self._framed(found)]
+                bends.append((part, found.bend))
                 step *= 1.6
                 continue
             step = (part - last.part) / 2.5
             if found == TOO_LARGE and step < SMALL_STEP or step < LEAST_STEP:
-                raise self._not_found(known, found == TOO_LARGE)
+                raise self._not_found(last, found == TOO_LARGE, break_up(bends[-FITTED:]))
         return known[-1]
+
+    def of_orbit(self, orbits: Orbits, orbit: Orbit) -> Union[Found, str, None]:
+        """The torus at the end of the way on which an orbit lies, as far as there is one.  None:
+        Newton's method failed; TOO_LARGE: the mesh would be."""
+        n, amplitude = self.potential.dimension, self.amplitude(1.0)
+        k, c = orbits.series(orbit, self.rotation, REACH[n])
+        if n == 2:
+            self.frame = best_frame(k, abs(c).max(0))
+        box = np.full(len(self._straight().mesh.sizes), float(REACH[n]))
+        mesh, before, rounds = self.mesh(2 * box), inf, 0
+        u = mesh.spread(k, c)
+        while mesh.points <= self.points:
+            self.tell("looking for the torus of an orbit, on %d points%s" % (
+                mesh.points, some(SOLVING * mesh.points)))
+            keep = np.all([abs(m) <= 2 * b for m, b in zip(mesh.m, box)], 0) & mesh.inside
+            solved = newton(mesh, u, amplitude, keep, SEEN)
+            rounds = 0 if solved and solved[1] < DOWN * before else rounds + 1
+            if solved is None or rounds == WEARY:
+                return None
+            u, before = solved[0], min(before, solved[1])
+            if before <= STALLED:
+                found = self._solved(1.0, self._measured(1.0, mesh, u), u)
+                return self._solved(1.0, found, found.u, 0.0) if isinstance(found, Found) else found
+            box *= GROWTH[n]
+            larger = self.mesh(2 * box)
+            u, mesh = mesh.moved(u, larger), larger
+        return TOO_LARGE
+
+    def _framed(self, found):
+        """The torus in the frame in which its modes fill the smallest box, chosen once."""
+        if len(found.mesh.sizes) == 1 or self.chosen or found.mesh.points < FRAMED:
+            return found
+        self.chosen, at = True, found.seen
+        frame = best_frame(found.mesh.k[:, at], abs(found.u).max(0)[at])
+        if frame == self.frame:
+            return found
+        self.frame = frame
+        k = found.mesh.k[:, found.keep]
+        mesh = self.mesh(abs(np.array(frame) @ k).max(1) + 1)
+        return self._measured(found.part, mesh, found.mesh.moved(found.u, mesh))
 
     def _straight(self):
         rank = len(Mesh.holding(self.potential, self.rotation, self.frame, (1, 1)).sizes)
@@ -134,7 +200,7 @@ class Way:
         amplitude = self.amplitude(part)
         for _ in range(ENLARGED):
             self.tell("looking for the torus at %s, on %d points%s" % (
-                _text(amplitude), mesh.points, some(SOLVING * mesh.points)))
+                self.place(part), mesh.points, some(SOLVING * mesh.points)))
             solved = newton(mesh, u, amplitude, keep)
             if solved is None:
                 return None
@@ -183,39 +249,43 @@ class Way:
             rates = max((_rates(mesh, seen, q) for q in ASPECTS[:None if len(mesh.m) == 2 else 1]),
                         key=np.prod)
             reach = SPARE * max(log(seen.max() / noise[far <= ROOM].max()), 0) + 6
+        bend = float(np.linalg.norm(size * (mesh.k.reshape(len(mesh.k), -1) ** 2.0).sum(0)))
         return Found(part, self.amplitude(part), mesh, u, ellipse(mesh, rates, reach),
-                     (seen > 0).reshape(turn.shape), rates, reach)
+                     (seen > 0).reshape(turn.shape), rates, reach, bend)
 
-    def _hopeful(self, known):
-        """Do the rates of decay, if they go on as they do, stay above 0 for half of what is left?
-        """
-        if len(known) < HISTORY or known[-1].mesh.points < self.points >> 2:
-            return True
-        return self._breakdown(known) > (known[-1].part + 1) / 2
-
-    def _breakdown(self, known):
-        """The part of the way at which a line through the last two rates of decay is 0."""
-        (x0, y0), (x1, y1) = [(f.part, f.rates.min()) for f in known[-2:]]
-        return x1 + y1 * (x1 - x0) / (y0 - y1) if y1 < y0 else inf
-
-    def _not_found(self, known, too_large=False):
-        last = known[-1]
-        at = _text(self.amplitude(last.part))
-        end = self._breakdown(known) if len(known) > 1 else inf
-        guess = _text(self.amplitude(end)) if isfinite(end) else ""
-        text = "no torus of this rotation %s was found for the amplitudes asked for: the last is " \
+    def _not_found(self, last, too_large, end):
+        text = "no torus of this rotation %s was found for the parameters asked for: the last is " \
             "at %s, on a grid of %d points" % (
-                "vector" if self.potential.dimension > 1 else "number", at, last.mesh.points)
-        if more := too_large or end >= 1 and last.mesh.points >= self.points >> 2:
+                "vector" if self.potential.dimension > 1 else "number", self.place(last.part),
+                last.mesh.points)
+        if too_large:
             text += "; farther on it needs more than the %d points that are allowed " \
                 "(converse-tori --points)" % self.points
-        if guess and end < (1 if more else 2):
-            text += "; the rate at which its coefficients decay would be 0 near %s" % guess
+        if end is not None:
+            text += "; it breaks up near %s, by an estimate" % self.place(end)
         return NotFound(text, last.part, [float(p) for p in self.amplitude(last.part)])
 
 
-def _text(amplitude):
-    return ", ".join("%.6g" % float(p) for p in amplitude)
+def break_up(bends: Sequence[Tuple[float, float]]) -> Optional[float]:
+    """The part of a way at which a torus breaks up, about: there the norm of its derivatives grows
+    like a power of the distance (Calleja and de la Llave, Nonlinearity 23, 2029, 2010).  None: it
+    does not grow so, or not near enough to the end to tell."""
+    if len(bends) < FITTED:
+        return None
+    ends = []
+    for part, norm in (np.array(bends).T, np.array(bends[-FEWER:]).T):
+        reach = part[-1] - part[0]
+        off = reach * np.geomspace(1e-4, 1, 1000)
+        height = np.log(norm) - np.log(norm).mean()
+        far = np.log(part[-1] + off[:, None] - part)
+        far -= far.mean(1)[:, None]
+        slope = far @ height / (far ** 2).sum(1)
+        misfit = abs(height - slope[:, None] * far).max(1) / np.ptp(height)
+        best = int(misfit.argmin())
+        if misfit[best] > MISFIT or slope[best] >= 0 or best in (0, len(off) - 1):
+            return None
+        ends.append(off[best])
+    return float(bends[-1][0] + ends[0]) if abs(ends[0] - ends[1]) < AGREED * ends[0] else None
 
 
 def _rates(mesh, seen, q):
@@ -244,18 +314,20 @@ def _extrapolated(known: List[Found], part: float) -> np.ndarray:
     return total
 
 
-def newton(mesh: Mesh, u: np.ndarray, amplitude: np.ndarray,
-           keep: np.ndarray) -> Optional[Tuple[np.ndarray, float]]:
+def newton(mesh: Mesh, u: np.ndarray, amplitude: np.ndarray, keep: np.ndarray,
+           useful: float = USEFUL) -> Optional[Tuple[np.ndarray, float]]:
     """Solves the equation for the coefficients of the modes `keep`, as exactly as the noise and the
-    other modes permit.  Returns them and the remaining error, or None if it does not converge."""
+    other modes permit.  Returns them and the remaining error, or None if it is not useful."""
     noise = mesh.noise(amplitude)
-    before = inf
+    before, best = inf, None
     for _ in range(ITERATIONS):
         error = mesh.error(u, amplitude)
         error[abs(error) < noise] = 0
         size = float(np.sqrt((abs(error[:, keep]) ** 2).sum()))
+        if size < before:
+            best = u, size
         if not size < before / 2 or size == 0:
-            return (u, size) if size < USEFUL else None
+            return best if best and best[1] < useful else None
         before = size
         u = (u + mesh.correction(u, error)) * keep
         if not abs(u).max() < 100:

@@ -9,18 +9,20 @@ import numpy as np
 
 from ..model.exact import Ends, short_text
 from ..model.map import SymplecticMap
-from ..model.potential import FourierSum
 from ..model.problem import Problem
-from .continuation import POINTS, Found, NotFound, Way, ellipse, newton
+from .continuation import POINTS, TOO_LARGE, Found, NotFound, Way, ellipse, newton, place
 from .effort import BALLS, REFINING, SINGLE, SOLVING, balls, limited, some
-from .newton import Mesh
+from .nearest import Place, nearest, noble, rotation_of
+from .newton import Frame, Mesh
 from .plan import MARGIN, Weights, plan
 from .refinement import SPARE_BITS, Modes, accepted, layers_for, numbers_of, refined, taken
-from .rotation import Rotation, rotation_of
+from .regular import Orbit, Orbits, regular, with_rotation
+from .rotation import Rotation
 from .torus import Torus, family
 
 __all__ = ["NotFound", "find"]
 
+ENOUGH = 3                  # From so many tori the one is chosen that needs the fewest points.
 ROUNDS = 3                  # This often the number of modes is chosen.
 # The lengths of pieces are chosen for DEGREE in sigma; they have LEAST_DEGREE to MOST_DEGREE.
 LEAST_DEGREE, DEGREE, MOST_DEGREE = 4, 21, 26
@@ -31,8 +33,8 @@ ALL = 0.93                  # A piece that could cover this part of the rest tak
 MOST_MARGIN = 1e100         # Coefficients times 2^bits are doubles on their way to integers.
 
 
-def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], *,
-         start: Optional[Torus] = None, margin: float = MARGIN,
+def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str, None] = None, *,
+         near: Optional[Place] = None, start: Optional[Torus] = None, margin: float = MARGIN,
          points: int = POINTS, memory: Optional[int] = None, time_limit: float = inf,
          progress: Optional[Callable[[str], None]] = None) -> Union[Torus, List[Torus]]:
     """Finds an invariant torus in floating-point numbers; nothing is proved.
@@ -41,11 +43,17 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], 
     ----------
     source : SymplecticMap or Problem
         The map; one parameter may have a range.
-    rotation : Rotation or str
-        The rotation vector, or its text as read_rotation takes it.
+    rotation : Rotation or str, optional
+        The rotation vector, or its text as read_rotation takes it, or decimals as for `near`.  By
+        default the one whose torus needs the fewest points among those of the most regular orbits,
+        with a range at the end where V is larger.
+    near : sequence of number, optional
+        In the place of `rotation`, one or two components in turns: the rotation vector is
+        tori.nearest(near).
     start : Torus, optional
-        A torus of the same rotation vector, of other amplitudes, from which to continue; by default
-        the map without potential.
+        A torus of the same rotation vector, of other amplitudes, from which to continue.  By
+        default it is made of an orbit, or continued from the map without potential: first in the
+        amplitudes that no parameter moves, then in the parameters.
     margin : float
         By which factor the error of the torus should be smaller than the theorem needs.
     points : int
@@ -73,25 +81,155 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], 
     """
     if not 1 <= margin <= MOST_MARGIN:
         raise ValueError("the margin, %g, is not from 1 to %g" % (margin, MOST_MARGIN))
-    tell = limited(progress, time_limit)
-    potential, part = family(source)
-    rotation = rotation_of(rotation)
-    if rotation.dimension != potential.dimension:
+    if near is not None and rotation is not None:
+        raise ValueError("the rotation vector is given by `rotation` or by `near`, not by both")
+    search = Search(Problem.of(source), points, memory, limited(progress, time_limit))
+    n, part = search.potential.dimension, search.part
+    if near is not None:
+        rotation = nearest(near, dimension=n)
+    elif rotation is not None:
+        rotation = rotation_of(rotation, n)
+    if rotation is None and start is not None:
+        rotation = start.rotation
+    if rotation is not None and rotation.dimension != n:
         raise ValueError("the rotation vector has %d component%s, but the potential depends on %d "
-                         "angle%s" % (rotation.dimension, "s" * (rotation.dimension > 1),
-                                      potential.dimension, "s" * (potential.dimension > 1)))
-    begin = {} if start is None else _amplitudes(potential, rotation, start)
-
-    def way(first: np.ndarray, last: np.ndarray) -> Way:
-        return Way(potential, rotation, points, first, last, tell, memory)
-
-    middle = _doubles(potential.amplitude)
-    first = way(np.array([begin.get(wave, 0.0) for wave in potential.waves]),
-                middle - _doubles(part) if part else middle)
-    found = first.follow(None if start is None else first.taken_up(start))
+                         "angle%s" % (rotation.dimension, "s" * (rotation.dimension > 1), n,
+                                      "s" * (n > 1)))
+    if start is not None and rotation is not None:
+        way, found = search.continued(rotation, start)
+    elif rotation is not None:
+        way, found = search.found(rotation)
+    else:
+        way, found = search.most_regular()
+        if part is not None:            # so far at the end where V is larger
+            way, found = search.found(way.rotation)
     if part is None:
-        return _single(found, first, margin)
-    return _Pieces(potential, part, rotation, way, margin, tell).cover(found)
+        return _single(found, way, margin)
+    return _Pieces(search, way.rotation, margin).cover(found)
+
+
+class Search:
+    """Looks for tori of a problem, each at the lower end of its range, if it has one."""
+
+    def __init__(self, problem: Problem, points: int, memory: Optional[int],
+                 tell: Callable[[str], None]) -> None:
+        self.potential, self.part = family(problem)
+        self.points, self.memory, self.tell = points, memory, tell
+        source = problem.map
+        self.named = [(name, float(low), float(high))
+                      for name, (low, high) in zip(source.names, source.ranges) if low or high]
+        constant = dict(zip(source.harmonics, source.amplitude)) if source.names else {}
+        self.constant = _doubles([constant.get(wave, 0) for wave in self.potential.waves])
+
+    def amplitude(self, s: Union[Fraction, int]) -> np.ndarray:
+        return _doubles(self._exact(s))
+
+    def _exact(self, s):
+        part = self.part or (Fraction(0),) * len(self.potential.amplitude)
+        return tuple(p + s * q for p, q in zip(self.potential.amplitude, part))
+
+    def _end(self):
+        return 0 if self.part is None else -1
+
+    def way(self, rotation: Rotation, first: np.ndarray, last: np.ndarray,
+            low: Optional[float] = None, high: float = 0.0) -> Way:
+        """The way between two amplitudes: those of the parameter s from low to high, or, with
+        None, from where all parameters are 0 to the end of the range."""
+        begin, end = (self.at(s) for s in ((self._end(),) * 2 if low is None else (low, high)))
+        return Way(self.potential, rotation, self.points, first, last, self.tell, self.memory, [
+            (name, 0.0 if low is None else value, there)
+            for (name, value), (_, there) in zip(begin, end)])
+
+    def at(self, s: float) -> List[Tuple[str, float]]:
+        """The parameters at s."""
+        return [(name, (low + high) / 2 + s * (high - low) / 2) for name, low, high in self.named]
+
+    def continued(self, rotation: Rotation, start: Optional[Torus] = None) -> Tuple[Way, Found]:
+        """The torus to which continuation leads, from the start or without potential."""
+        last = self.amplitude(self._end())
+        if start is not None:
+            begin = _amplitudes(self.potential, rotation, start)
+            first = np.array([begin.get(wave, 0.0) for wave in self.potential.waves])
+            way = Way(self.potential, rotation, self.points, first, last, self.tell, self.memory)
+            return way, way.follow(way.taken_up(start))
+        found = None
+        if self.constant.any():
+            way = Way(self.potential, rotation, self.points, 0 * last, self.constant, self.tell,
+                      self.memory, [("the share of the constant amplitudes", 0, 1)])
+            found = way.follow()
+            if not (last - self.constant).any():
+                return way, found
+        way = self.way(rotation, self.constant, last)
+        if found is not None:
+            way.frame, way.chosen = found.mesh.frame, True
+        return way, way.follow(found)
+
+    def found(self, rotation: Rotation) -> Tuple[Way, Found]:
+        """The torus of this rotation vector.  With one angle it is made of an orbit, or else
+        continued; with two angles, where an orbit is harder to find, the other way round."""
+        ways = [self._of_its_orbit, self.continued]
+        failure: Optional[NotFound] = None
+        for call in ways if self.potential.dimension == 1 else reversed(ways):
+            try:
+                return call(rotation)
+            except NotFound as error:   # continuation says how far it came
+                failure = error if call == self.continued or failure is None else failure
+        assert failure is not None
+        raise failure
+
+    def _orbits(self, s):
+        return Orbits(self.potential._replace(amplitude=self._exact(s)))
+
+    def _of_its_orbit(self, rotation):
+        orbits = self._orbits(self._end())
+        return self._made(orbits, with_rotation(orbits, rotation), rotation, self._end())
+
+    def _made(self, orbits, orbit, rotation, s):
+        """The torus of an orbit."""
+        way = self.way(rotation, self.amplitude(s), self.amplitude(s), float(s), float(s))
+        found = way.of_orbit(orbits, orbit)
+        if isinstance(found, Found):
+            return way, found
+        raise NotFound("an orbit of the rotation vector (%s) was followed at %s, but no torus was "
+                       "made of it%s" % (", ".join("%.9f" % w for w in rotation.floats),
+                                         way.place(1.0), " on %d points" % self.points * (
+                                             found == TOO_LARGE)), 0.0, self.amplitude(s))
+
+    def most_regular(self) -> Tuple[Way, Found]:
+        """Of the tori of the most regular orbits the one that needs the fewest points."""
+        s = self._end()
+        if self.part is not None and abs(self.amplitude(1)).sum() > abs(self.amplitude(-1)).sum():
+            s = 1
+        seen, best = self.seen(s)
+        if best is None:
+            why = "%d regular orbits are seen, but no torus was made of them" % len(seen) if seen \
+                else "no orbit is seen that is regular and not resonant"
+            raise NotFound("at %s %s; a rotation vector may be given (converse-tori --rotation)" % (
+                place(self.at(s), self.amplitude(s)), why), 0.0, self.amplitude(s).tolist())
+        return best
+
+    def seen(self, s: int) -> Tuple[List[Orbit], Optional[Tuple[Way, Found]]]:
+        """The most regular orbits, and of their tori the one that needs the fewest points."""
+        orbits = self._orbits(s)
+        self.tell("looking for regular orbits at %s" % place(self.at(s), self.amplitude(s)))
+        made: List[Tuple[Way, Found]] = []
+        for orbit in (seen := regular(orbits)):
+            self.tell("looking for a torus near (%s)" % ", ".join(
+                "%.6f" % w for w in orbit.rotation))
+            rotation = nearest(orbit.rotation) if orbit.noble is None else noble(orbit.noble)
+            try:
+                made.append(self._made(orbits, orbit if orbit.noble else with_rotation(
+                    orbits, rotation, orbit), rotation, s))
+            except NotFound:
+                pass
+            if len(made) == ENOUGH:
+                break
+        return seen, min(made, key=points_of, default=None)
+
+
+def points_of(made: Tuple[Way, Found]) -> int:
+    """Of the grid on which a torus is to be refined."""
+    return plan(made[1]).mesh(made[1].mesh).points
 
 
 def _doubles(numbers):
@@ -153,21 +291,19 @@ class _Pieces:
 
     end -- e, about, beyond 1 or beyond -1; infinity: far away"""
 
-    def __init__(self, potential: FourierSum, part: Tuple[Fraction, ...], rotation: Rotation,
-                 way: Callable[[np.ndarray, np.ndarray], Way], margin: float,
-                 tell: Callable[[str], None]) -> None:
-        self.potential, self.part, self.rotation = potential, part, rotation
-        self.way, self.margin, self.tell = way, margin, tell
+    def __init__(self, search: Search, rotation: Rotation, margin: float) -> None:
+        self.search, self.potential, self.part = search, search.potential, search.part
+        self.rotation, self.margin, self.tell = rotation, margin, search.tell
+        self.amplitude = search.amplitude
+        self.frame: Optional[Frame] = None
         self.end = inf
         self.alpha: Optional[Weights] = None
         self.more = 1.0                 # times as many modes as `plan` estimates
 
-    def amplitude(self, s: Fraction) -> np.ndarray:
-        return _doubles([p + s * q for p, q in zip(self.potential.amplitude, self.part)])
-
     def cover(self, found: Found) -> List[Torus]:
         """The pieces from s = -1, whose torus this is, to 1."""
         low, longest, tori = Fraction(-1), Fraction(2), []
+        self.frame = found.mesh.frame
         middle = self._followed(found, low, Fraction(0))
         last = self._followed(middle, Fraction(0), Fraction(1))
         worst = min(found, last, key=lambda each: float(each.rates.min()))
@@ -203,7 +339,10 @@ class _Pieces:
     def _placed(self, begin, end, call):
         """Calls a function with the way from s = begin to s = end."""
         try:
-            return call(self.way(self.amplitude(begin), self.amplitude(end)))
+            way = self.search.way(self.rotation, self.amplitude(begin), self.amplitude(end),
+                                  float(begin), float(end))
+            way.frame, way.chosen = self.frame, True        # one for all pieces
+            return call(way)
         except NotFound as error:
             s = float(begin) + error.reached * float(end - begin)
             raise NotFound(str(error), (s + 1) / 2, error.amplitude) from None

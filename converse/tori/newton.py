@@ -46,6 +46,25 @@ def default_frame(potential: FourierSum) -> Frame:
     return (1, 0), (0, 1)
 
 
+# Frames that are tried: the first is that of Z^2.
+FRAMES: Tuple[Frame, ...] = tuple(
+    ((a, b), (c, d)) for a, b in ((1, 0), (1, 1), (2, 1), (1, 2), (1, -1))
+    for c, d in ((0, 1), (1, -1), (2, -1), (1, -2), (1, 1)) if a * d != b * c)
+
+
+def best_frame(k: np.ndarray, size: np.ndarray) -> Frame:
+    """The frame along whose axes the modes k (2, n) that count fill the smallest rhombus.  Those
+    count that are larger than any mode at the edge of what is known."""
+    k = k[:, size > size[abs(k).max(0) == abs(k).max()].max()]
+
+    def rhombus(frame):
+        (a, b), (c, d) = frame
+        m, aspect = abs(np.array(frame) @ k), np.geomspace(1 / 16, 16, 33)
+        reach = (m[0] + aspect[:, None] * m[1]).max(1, initial=1)
+        return (reach ** 2 / aspect).min() / abs(a * d - b * c)
+    return min(FRAMES, key=rhombus)
+
+
 def pivots(basis: Sequence[Sequence[int]], frame: Frame) -> List[int]:
     """The diagonal of a basis in mode numbers; 1 for a group of one dimension."""
     if len(basis) == 1:

@@ -18,7 +18,8 @@ from ..storage.kept import Kept
 from . import certificate
 from .effort import Tell, limited
 from .find import find
-from .rotation import Rotation, rotation_of
+from .nearest import Place, rotation_of
+from .rotation import Rotation
 from .torus import Torus, family, problem_of
 
 # If the residual exceeds what is needed by a factor below MOST_LACKING, the torus is found again,
@@ -165,7 +166,7 @@ class ProvedTorus(Kept):
 
 
 def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
-          rotation: Union[Rotation, str, None] = None, *,
+          rotation: Union[Rotation, str, None] = None, *, near: Optional[Place] = None,
           start: Optional[Torus] = None, margin: Optional[float] = None,
           points: Optional[int] = None, memory: Optional[int] = None, jobs: int = 1,
           time_limit: float = math.inf, progress: Optional[Tell] = None,
@@ -175,10 +176,10 @@ def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
     Parameters
     ----------
     source : Torus, sequence of Torus, SymplecticMap or Problem
-        A torus, tori that cover a range, or a map, which needs `rotation`.
+        A torus, tori that cover a range, or a map.
     rotation : Rotation or str, optional
-        With a map: the rotation vector.
-    start, margin, points, memory : optional
+        The rotation vector; with a map, as `find` takes it.
+    near, start, margin, points, memory : optional
         With a map: what `find` takes.
     jobs : int
         How many pieces of a range are verified at a time, in processes.
@@ -213,37 +214,35 @@ def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
         raise ValueError("jobs is %s; at least one piece is proved at a time" % jobs)
     tell = limited(progress, time_limit)
     finding: Dict[str, Any] = {name: value for name, value in (
-        ("start", start), ("margin", margin), ("points", points), ("memory", memory))
-        if value is not None}
+        ("near", near), ("start", start), ("margin", margin), ("points", points),
+        ("memory", memory)) if value is not None}
     rotation = None if rotation is None else rotation_of(rotation)
     if not isinstance(source, (SymplecticMap, Problem)):
         if finding:
-            raise ValueError("start, margin, points and memory are for a map, whose torus is "
-                             "looked for")
+            raise ValueError("near, start, margin, points and memory are for a map, whose torus "
+                             "is looked for")
         tori = [source] if isinstance(source, Torus) else list(source)
         if rotation is not None and any(torus.rotation != rotation for torus in tori):
             raise ValueError("the torus has another rotation vector than the one that is given")
         return _verified(tori, jobs, tell, keep)
-    if rotation is None:
-        raise ValueError("a map needs a rotation vector")
     tell("looking for a torus")
+    found = find(source, rotation, progress=tell, **finding)
     try:
-        return _proved(source, rotation, find(source, rotation, progress=tell, **finding),
-                       jobs, tell, keep)
+        return _proved(source, found, jobs, tell, keep)
     except NotProved as failure:
         lacking = failure.residual / failure.needed if failure.needed else math.inf
         if not 1 < lacking < MOST_LACKING or margin:
             raise
     tell("looking for a more accurate torus")
-    finding["margin"] = FINER * lacking
-    return _proved(source, rotation, find(source, rotation, progress=tell, **finding), jobs, tell,
-                   keep)
+    rotation = (found if isinstance(found, Torus) else found[0]).rotation
+    finding.update(margin=FINER * lacking, near=None)
+    return _proved(source, find(source, rotation, progress=tell, **finding), jobs, tell, keep)
 
 
-def _proved(problem, rotation, found, jobs, tell, keep):
+def _proved(problem, found, jobs, tell, keep):
     proof = _verified([found] if isinstance(found, Torus) else found, jobs, tell, keep)
     torus = proof.torus
-    if (torus.potential, torus.part, torus.rotation) != (*family(problem), rotation) \
+    if (torus.potential, torus.part) != family(problem) \
             or _ends(proof.pieces) != ((Fraction(-1), Fraction(1)) if torus.part else
                                        (Fraction(0), Fraction(0))):
         raise ConverseError("the torus that was found is not of the problem; this is an error of "

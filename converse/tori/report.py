@@ -8,7 +8,7 @@ from typing import Iterator, Optional, Sequence, Tuple, Union
 from ..model.exact import decimal_text, rounded_text, short_text
 from ..model.map import from_patch
 from ..model.problem import Problem
-from ..model.statement import TORUS, conditions, ended, indented, labelled, map_lines, parameters
+from ..model.statement import TORUS, conditions, ended, indented, labelled, map_lines
 from ..storage.files import plain
 from ..storage.kept import verify_text
 from ..version import __version__
@@ -154,44 +154,29 @@ def _divisors(piece: Piece, strip: Strip) -> Iterator[Tuple[str, str]]:
             "(%s)" % ", ".join(map(str, k)) for k in piece.basis), " + ".join(terms))
 
 
-def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotProved, TimeIsUp],
-              by_hand: Sequence[str] = (), left: str = "") -> str:
+def undecided(problem: Problem, rotation: Optional[Rotation],
+              reason: Union[NotFound, NotProved, TimeIsUp], by_hand: Sequence[str] = (),
+              left: str = "") -> str:
     """The report without a theorem, and why there is none.
 
     by_hand: flags that took a choice from the program; left: about the torus that was found."""
-    n, stated = rotation.dimension, _stated(problem)
-    lines = ["UNDECIDED: nothing is proved.  There may be no %s with this %s (see converse)." % (
-        TORUS[n], VECTOR[n]), *map_lines(stated),
+    stated = _stated(problem)
+    lines = ["UNDECIDED: nothing is proved.  There may be no %s%s (see converse)." % (
+        TORUS[stated.map.dimension], "" if rotation is None else " with this %s" % VECTOR[
+            rotation.dimension]), *map_lines(stated),
              *ended(indented(["was examined " + " ".join(conditions(stated))])), ""]
     entries = [("Time limit" if isinstance(reason, TimeIsUp) else
                 "Not found" if isinstance(reason, NotFound) else "Not proved",
                 plain(" ".join(str(reason).split())))]
-    if isinstance(reason, NotFound):
-        entries += _reached(problem, reason.amplitude)
     if left:
         entries.append(("Found", left))
     if by_hand:
         entries.append(("By hand", "%s; without such a flag the program chooses"
                         % ", ".join(by_hand)))
-    for label, text in (*entries, *_rotation_lines(rotation), *_input_lines(problem)):
+    for label, text in (*entries, *(_rotation_lines(rotation) if rotation else ()),
+                        *_input_lines(problem)):
         lines += labelled(label, text)
     return "\n".join(lines) + "\n"
-
-
-def _reached(problem: Problem, amplitude: Sequence[float]) -> Iterator[Tuple[str, str]]:
-    """The value at which the last torus was found, of the one parameter whose range was asked for.
-    Nothing if V does not have these amplitudes at any value."""
-    potential, part = family(problem)
-    named = [each for each in parameters(problem) or () if each[1] < each[2]]
-    if part is None or len(named) != 1:
-        return
-    (name, low, high), = named
-    way = [float(q) for q in part]
-    off = [x - float(p) for x, p in zip(amplitude, potential.amplitude)]
-    s = sum(map(float.__mul__, off, way)) / math.fsum(q * q for q in way)
-    if all(math.isclose(x, s * q, abs_tol=1e-9) for x, q in zip(off, way)):
-        yield "Reached", "%s = %.6g, the last torus that was found" % (
-            name, (low + high + s * float(high - low)) / 2)
 
 
 def _up(x: Union[float, Fraction], digits: int = 3) -> str:

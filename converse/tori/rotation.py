@@ -190,6 +190,8 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
         POLYNOMIAL: ELEMENT                     one angle; the polynomial quadratic in t
         POLYNOMIAL: ELEMENT, ELEMENT            two angles; the polynomial cubic in t
         POLYNOMIAL near 1.2: ...                the real root t that is nearest to 1.2
+        [0; 4, 1, 4, ...]                       a continued fraction.  The last quotient goes on if
+                                                it is there twice, else 1, 1, ... follows
 
     such as "t^3+t^2-2t-1: (-23+8t+11t^2)/13, (25-7t-8t^2)/13".  Without `near` t is the largest
     real root.  An element is a sum of terms such as 3/4 t^2, or a quotient of two sums in
@@ -235,17 +237,31 @@ def name_of(rotation: Rotation) -> str:
                  rotation.text()), "")
 
 
-def rotation_of(given: Union[Rotation, str]) -> Rotation:
-    """A rotation vector as it is, or the one that a text describes."""
-    return given if isinstance(given, Rotation) else read_rotation(given)
+def _of_quotients(text):
+    """The rotation number of a continued fraction."""
+    if not (match := FRACTION.fullmatch(text)):
+        raise ValueError("%.60r is not a continued fraction such as '[0; 4, 1, 4, ...]'" % text)
+    first, *others = [int(each) for each in re.findall(r"-?\d+", match[0])]
+    if not all(0 < each <= MOST_QUOTIENT for each in others):
+        raise ValueError("%.60r: the quotients after the first are from 1 to %d"
+                         % (text, MOST_QUOTIENT))
+    period = others[-1] if others[-2:-1] == others[-1:] else 1
+    polynomial = -1, period, 1
+    field = Field(polynomial, real_roots(polynomial)[-1])
+    value = field.t
+    for each in reversed(others):
+        value = field.inverse((value[0] + each, *value[1:]))
+    return Rotation("", polynomial, (field.low, field.high), ((value[0] + first, *value[1:]),))
 
 
 def _read(text, name):
+    if text.lstrip().startswith("["):
+        return _of_quotients(text)
     text = re.sub(r"\s*([-+*/^()t,:])\s*", r"\1", text.strip())
     left, colon, right = text.partition(":")
     if not colon:
-        raise ValueError("%.60r is not a rotation vector: give a name (%s) or POLYNOMIAL: "
-                         "ELEMENTS, such as 't^2+t-1: t'" % (text, ", ".join(NAMES)))
+        raise ValueError("%.60r is not a rotation vector: give a name (%s), a continued fraction "
+                         "or POLYNOMIAL: ELEMENTS, such as 't^2+t-1: t'" % (text, ", ".join(NAMES)))
     left, near, place = left.partition("near")
     polynomial = _minimal(_sum(left.strip()))
     roots = real_roots(polynomial)
@@ -269,6 +285,8 @@ def _nearest(polynomial, roots, place):
 
 # ---- reading and writing polynomials
 
+FRACTION = re.compile(r"\s*\[\s*-?\d+\s*;(\s*\d+\s*,)+\s*\.\.\.\s*\]\s*", re.ASCII)
+MOST_QUOTIENT = 10 ** 6
 DIGITS = 60                             # Distances of roots from a place are compared to these.
 QUOTIENT = re.compile(r"(\()?([^()]*)(?(1)\))(?:/(\()?([^()]*)(?(3)\)))?")
 TERM = re.compile(r"([-+])(?=[\d.t])(\d+/\d+|\d*\.?\d+)?(?:(?:(?<=\d)\*)?(t)(?:\^(\d{1,2}))?)?"

@@ -53,7 +53,8 @@ def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
     part = parts[0] if parts else (Fraction(0),) * len(problem.waves)
     present = [j for j, p in enumerate(problem.amplitude) if p or part[j]]
     if not present:
-        raise ValueError("no wave of the potential is present; give an amplitude that is not 0")
+        raise ValueError("V is 0: every torus J = constant is invariant, and there is nothing "
+                         "to prove; give an amplitude that is not 0")
     waves = tuple(problem.waves[j] for j in present)
     potential = FourierSum(waves, tuple(problem.amplitude[j] for j in present),
                            2 if any(k1 for _, k1, _ in waves) else 1)

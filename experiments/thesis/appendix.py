@@ -7,6 +7,7 @@ import farey
 import numpy as np
 
 from converse.draw.plot import DARK, VERMILLION
+from converse.tori.nearest import LOWER, UPPER, halves
 
 from . import shared
 
@@ -60,19 +61,19 @@ def trimed(figure, families):
 def tri(figure, families):
     """Levels of Farey's triangles."""
     ideal, true = figure.subplots(1, 2)
-    corners = {point: np.array(point[:2], float) for point in farey.LOWER + farey.UPPER}
-    cells = [farey.LOWER, farey.UPPER]
+    corners = {point: np.array(point[:2], float) for point in LOWER + UPPER}
+    cells = [LOWER, UPPER]
     for level in range(LEVELS):
         style = {"color": DARK, "linewidth": 1.2 - 0.2 * level}
         for cell in cells:
             loop = cell + cell[:1]
             ideal.plot(*np.array([corners[point] for point in loop]).T, **style)
             true.plot(*np.array([(p0 / q, p1 / q) for p0, p1, q in loop]).T, **style)
-        halves = [half for cell in cells for half in farey.halves(cell)]
-        for (a, _, c), (_, middle, _) in zip(cells, halves[::2]):
+        parts = [half for cell in cells for half in halves(cell)]
+        for (a, _, c), (_, middle, _) in zip(cells, parts[::2]):
             corners[middle] = (corners[a] + corners[c]) / 2
-        cells = halves
-    place = [np.array(point[:2], float) for point in farey.UPPER]
+        cells = parts
+    place = [np.array(point[:2], float) for point in UPPER]
     for _ in range(60):                     # rrr...: (A, B, C) <- (C, A + C, B)
         a, b, c = place
         place = [c, (a + c) / 2, b]

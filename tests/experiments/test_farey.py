@@ -8,6 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from converse.tori.field import determinant
+from converse.tori.nearest import LOWER, UPPER, halves
+
 PADOVAN = [2, 2, 3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 49, 65, 86, 114, 151, 200, 265, 351, 465, 616,
            816, 1081, 1432, 1897, 2513, 3329, 4410, 5842]
 TENTH = [2, 2, 3, 3, 5, 5, 8, 10, 13, 18, 21, 26, 39, 47, 60, 68, 81, 89, 102, 110, 191, 199, 301,
@@ -83,10 +86,10 @@ def test_golden_mean():
 def test_the_vertices_of_the_interior_have_two_hypotenuses():
     """Thesis, Appendix A: every vector with a small denominator appears, inside twice, on the
     boundary once."""
-    cells, seen = [farey.UPPER], []
+    cells, seen = [UPPER], []
     for _ in range(12):
         seen += [tuple(x + y for x, y in zip(a, c)) for a, _, c in cells]
-        cells = [half for cell in cells for half in farey.halves(cell)]
+        cells = [half for cell in cells for half in halves(cell)]
     for q in range(2, 6):
         for p0 in range(q + 1):
             for p1 in range(q - p0, q + 1):
@@ -116,16 +119,16 @@ def test_tree(w):
 def test_triangle(w):
     """Each mediant is the sum of the hypotenuse's ends of a triangle that contains the vector and
     has determinant 1 or -1, and the address leads there."""
-    cell = farey.UPPER if sum(w) >= 1 else farey.LOWER
+    cell = UPPER if sum(w) >= 1 else LOWER
     mediants = take(farey.triangle(w), 60)
     for k, (p, q, address) in enumerate(mediants):
-        assert abs(farey.determinant(*cell)) == 1
-        weights = [farey.determinant(*(cell[:j] + ((*w, 1),) + cell[j + 1:])) for j in range(3)]
+        assert abs(determinant(cell)) == 1
+        weights = [determinant(cell[:j] + ((*w, 1),) + cell[j + 1:]) for j in range(3)]
         assert min(weights) >= 0 or max(weights) <= 0       # barycentric coordinates
         assert (*p, q) == tuple(x + y for x, y in zip(cell[0], cell[2])) and len(address) == k
         assert address == mediants[-1].address[:k]
         if k + 1 < len(mediants):
-            cell = farey.halves(cell)["lr".index(mediants[-1].address[k])]
+            cell = halves(cell)["lr".index(mediants[-1].address[k])]
     if len(mediants) < 60:
         assert (Fraction(p[0], q), Fraction(p[1], q)) == w
 

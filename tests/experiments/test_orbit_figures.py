@@ -28,6 +28,7 @@ from thesis import appendix, hedlund, shared, states, twist_maps  # noqa: E402
 
 from converse.orbits import pictures  # noqa: E402
 from converse.orbits.state import vector_words  # noqa: E402
+from converse.tori.nearest import LOWER, halves  # noqa: E402
 
 REAL = states.ORBITS
 SPIRAL, TENTH = ((28, 37), 49), ((11, 68), 110)
@@ -372,8 +373,8 @@ def test_cut_of_a_triangle(drawn):
     """The right one is at C, as halves() has it."""
     figure, _ = drawn("trimed")
     at = {text.get_text()[0]: text.xy[0] for text in figure.axes[0].texts}
-    left, right = farey.halves(("A", "B", "C"))
-    assert ("C" in right, "A" in left) == (True, True)
+    left, right = halves(LOWER)
+    assert (LOWER[2] in right, LOWER[0] in left) == (True, True)
     assert at["C"] < at["r"] < at["B"] == at["M"] < at["l"] < at["A"]
 
 

@@ -152,11 +152,33 @@ def test_a_grid_that_is_too_small_is_said():
         find(Problem(MuldoonMap("0.9", 0, 0)), GOLDEN, points=256)
 
 
-def test_the_decay_is_told_only_if_it_ends_before():
-    with pytest.raises(NotFound, match=r"allowed \(converse-tori --points\)$"):
-        find(Problem(MuldoonMap("0.97", 0, 0)), GOLDEN, points=1 << 12)
-    with pytest.raises(NotFound, match=r"--points\); the rate .* would be 0 near 0.97"):
-        find(Problem(MuldoonMap("0.98", 0, 0)), GOLDEN, points=1 << 15)
+def test_the_break_up_is_estimated():
+    """On the way of the golden circle of the standard map, which ends at 0.971635."""
+    with pytest.raises(NotFound, match="it breaks up near a = .*, by an estimate$") as caught:
+        find(Problem(MuldoonMap("0.98", 0, 0)), GOLDEN, points=1 << 14)
+    assert float(str(caught.value).split("near a = ")[1].split(",")[0]) == pytest.approx(
+        0.971635, abs=2e-4)
+
+
+@pytest.mark.parametrize("power, noise, end", [(-1.0, 0, 1.1), (-2.0, 1e-3, 1.1), (-1.0, 0.5, None),
+                                               (0.0, 1e-3, None), (1.0, 0, None)])
+def test_a_break_up_is_told_only_if_the_norms_grow_like_a_power(power, noise, end):
+    part = np.array([0.6, 0.75, 0.85, 0.93, 0.97, 1.0])
+    norm = (1.1 - part) ** power * (1 + noise * np.array([1, -1, 1, 1, -1, 1]))
+    found = continuation.break_up(list(zip(part, norm)))
+    assert found == (None if end is None else pytest.approx(end, abs=0.02))
+    assert continuation.break_up(list(zip(part, norm))[1:]) is None
+
+
+def test_the_constant_amplitudes_come_first_and_the_named_parameter_is_told():
+    """K2 stays as it is while K1 grows: the golden circle is gone at K1 = 0.131."""
+    family = SymplecticMap([(1, 0, "-1/2"), (3, 0, "-1/2")], [0, "0.05"], [[1, 0]], ["0.4"], ["K1"])
+    with pytest.raises(NotFound, match=r"the last is at K1 = 0\.1\d+, on a grid") as caught:
+        find(family, "golden", points=1 << 13)
+    assert 0.11 < caught.value.amplitude[0] < 0.1317 and caught.value.amplitude[1] == 0.05
+    strong = SymplecticMap([(1, 0), (2, 0)], [0, 2], [[1, 0]], ["0.4"], ["K1"])
+    with pytest.raises(NotFound, match="the last is at the share of the constant amplitudes = 0.2"):
+        find(strong, "golden", points=1 << 10)
 
 
 def test_refinement_begins_with_what_is_below_the_noise(monkeypatch):
@@ -200,7 +222,7 @@ def test_what_does_not_go_together_is_refused():
         find(Problem(MuldoonMap("0.5", 0, 0)), GOLDEN, margin=1e300)
     with pytest.raises(ValueError, match="2 components.*1 angle"):
         find(Problem(MuldoonMap("0.5", 0, 0)), read_rotation("T49"))
-    with pytest.raises(ValueError, match="no wave"):
+    with pytest.raises(ValueError, match="V is 0: every torus J = constant is invariant"):
         find(Problem(MuldoonMap(0, 0, 0)), GOLDEN)
     with pytest.raises(ValueError, match="2 parameters"):
         find(Problem(MuldoonMap(("0.1", "0.2"), ("0.1", "0.2"), 0)), read_rotation("T49"))
@@ -444,7 +466,7 @@ def test_what_is_going_on_is_told():
     """Of a single torus and of a range: where it is, and how much work."""
     words = []
     find(Problem(MuldoonMap("0.2", 0, 0)), GOLDEN, progress=words.append)
-    assert re.fullmatch(r"looking for the torus at 0\.\d+, on \d+ points", words[0])
+    assert re.fullmatch(r"looking for the torus of an orbit, on \d+ points", words[0])
     assert re.fullmatch(r"refining a torus of \d+ modes", words[-1])
     words.clear()
     find(Problem(MuldoonMap(("0.09", "0.11"), 0, 0)), GOLDEN, progress=words.append)

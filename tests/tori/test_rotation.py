@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from converse.check.field import evaluate, is_irreducible
 from converse.tori import Rotation, read_rotation
 from converse.tori.field import Field, real_roots
-from converse.tori.rotation import NAMES, name_of, rotation_of
+from converse.tori.nearest import rotation_of
+from converse.tori.rotation import NAMES, name_of
 
 
 def test_names_are_the_numbers_of_the_literature():

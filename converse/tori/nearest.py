@@ -1,58 +1,80 @@
 """Rotation vectors with good small divisors near a given place.
 
-    python experiments/near.py W [W] [--tolerance T]
-
-Prints the vector that converse-tori takes as --rotation.  For one angle it is a noble number.
-
 Near a vector of rationals there are vectors of a field: those that lie in one Farey triangle (of
 determinant 1 or -1) with its corners p_i/q_i weighed by a basis c_i of the integers of the field,
 (sum of c_i p_i)/(sum of c_i q_i).  Far out they all have the divisors of the field; a large
-triangle, small norms and conjugates that nearly coincide make them better.  On a line these are
-the noble numbers, whose continued fractions end in 1, 1, 1, ...
+triangle, small norms and conjugates that nearly coincide make them better (Kim and Ostlund, Phys.
+Rev. A 34, 3426, 1986).  On a line these are the noble numbers, whose continued fractions end in
+1, 1, 1, ...
 """
 
-import argparse
-import sys
+import re
 from fractions import Fraction
+from functools import lru_cache
 from itertools import permutations, product
 from math import ceil, floor
-from typing import Iterator, List, Tuple, Union
+from typing import Iterator, List, Optional, Sequence, Tuple, Union
 
-import farey
 import numpy as np
 
-from converse.commands.common import Parser, ended
-from converse.model.exact import Number, exact, short_text
-from converse.storage.files import ConverseError
-from converse.tori.field import Element, Field, real_roots
-from converse.tori.rotation import Rotation
+from ..model.exact import Number, exact, short_text
+from .field import Element, Field, Polynomial, determinant, real_roots
+from .rotation import Rotation, read_rotation
 
-TOLERANCE, LEAST = Fraction(1, 1000), Fraction(1, 10 ** 6)
+TOLERANCE, LEAST = Fraction(1, 1000), Fraction(1, 10 ** 12)
+COARSEST = {1: LEAST, 2: TOLERANCE}         # For two angles a smaller tolerance takes minutes.
 FIELDS = (-1, -2, 1, 1), (-1, -1, 0, 1)         # of 2 cos(2 pi/7), and of the spiral mean
 GOLDEN = -1, 1, 1
 HIGHEST = 3                             # coefficient of the integers of a field that are tried
 STEEPEST = 60.0                         # ratio of weights in a triangle
-SEEN, COMPARED = 1000, 6                # candidates, judged by few k and by many
+SEEN, COMPARED = 200, 6                 # candidates, judged by few k and by many
 LARGEST = 20                            # denominator of a triangle, times the tolerance^(2/3)
 NEAREST, REACH = 40, 500                # |k| up to which divisors are judged so
+DECIMALS = re.compile(r"(\s*[-+]?(\d+\.?\d*|\.\d+)\s*(,|$))+", re.ASCII)
 
 Candidate = Tuple[Field, Tuple[Element, ...]]
-Triangle = Tuple[Tuple[int, int, int], ...]     # corners (q, p0, p1)
+Place = Sequence[Union[Number, float]]
+# Triangles are (A, B, C), the right angle at B; points are triples (p0, p1, q).
+Triangle = Tuple[Tuple[int, int, int], ...]
+LOWER: Triangle = ((1, 0, 1), (0, 0, 1), (0, 1, 1))
+UPPER: Triangle = ((1, 0, 1), (1, 1, 1), (0, 1, 1))
 
 
-def near(w0: Union[Number, float], w1: Union[Number, float, None] = None,
-         tolerance: Union[Number, float] = TOLERANCE) -> Rotation:
-    """The rotation vector with the best small divisors that was found near w0, or near (w0, w1).
+def rotation_of(given: Union[Rotation, str], dimension: Optional[int] = None) -> Rotation:
+    """A rotation vector as it is, or the one that a text describes: as read_rotation takes it, or
+    decimals such as "0.2077" or "0.2742, 0.2802", which stand for the nearest() vector.
+
+    Raises
+    ------
+    TypeError, ValueError
+        It is neither, or not of `dimension` angles."""
+    if not isinstance(given, (Rotation, str)):
+        raise TypeError("the rotation vector is a Rotation, or a text such as 'golden', not %r; "
+                        "near=(0.618,) takes numbers" % (given,))
+    if isinstance(given, Rotation):
+        return given
+    if not DECIMALS.fullmatch(given):
+        return read_rotation(given, dimension)
+    return nearest([each.strip() for each in given.split(",")], dimension=dimension)
+
+
+def nearest(place: Place, tolerance: Union[Number, float, None] = None,
+            dimension: Optional[int] = None) -> Rotation:
+    """The rotation vector with the best small divisors that is found near a place: a noble number,
+    or for two angles a vector of a cubic field.
 
     For it c(delta) of docs/proofs/existence.md is least in doubles, with the norm of k that adds
     the absolute values of its components.
 
     Parameters
     ----------
-    w0, w1 : number or str
-        In turns; w1 is given for two angles.
-    tolerance : number or str
-        How far each component may be away, in turns; the result's name tells it.
+    place : sequence of number, str or float
+        One or two components, in turns.
+    tolerance : number, optional
+        How far each component may be away, in turns; by default a unit of the last decimal that is
+        given, 0.001 if it is no decimal, and for two angles at least 0.001.
+    dimension : int, optional
+        How many angles the map has; by default any number.
 
     Returns
     -------
@@ -61,65 +83,77 @@ def near(w0: Union[Number, float], w1: Union[Number, float, None] = None,
     Raises
     ------
     ValueError
-        None was found so near.
+        The place is not of so many numbers, or no vector was found so near.
     """
-    target = tuple(_about(w) for w in (w0, w1) if w is not None)
-    within, n = _about(tolerance), len(target)
+    texts = [repr(float(w)) if isinstance(w, float) else str(w) for w in place]
+    target, n = tuple(map(exact, texts)), len(texts)
+    if n not in (1, 2) or dimension not in (None, n):
+        raise ValueError("a rotation vector near %s has %d components; give %s" % (
+            ", ".join(texts), n, "one or two" if dimension is None else dimension))
+    if tolerance is None:
+        within = max(COARSEST[n], *(
+            Fraction(1, 10 ** len(text.partition(".")[2])) if "." in text and text[-1] != "."
+            and "e" not in text else TOLERANCE for text in texts))
+    else:
+        within = exact(repr(tolerance) if isinstance(tolerance, float) else tolerance)
     if not LEAST <= within <= 1:
         raise ValueError("the tolerance, %s, is not from %s to 1"
                          % (short_text(within), short_text(LEAST)))
     # A Farey interval of this size has denominators of about within^(-1/2), a triangle of about
     # within^(-2/3), and the divisors that set this vector apart are those of such k.
-    delta = Fraction(float(within) ** (0.5 if n == 1 else 2 / 3)).limit_denominator(10 ** 6)
-    name = "best found within %s of %s" % (short_text(within), " ".join(map(short_text, target)))
-    found = _nobles(target[0], within, float(delta)) if n == 1 \
-        else _cubics(target, within, float(delta))
-    k = _modes(n, ceil(min(10 / float(delta), REACH)))
+    delta = float(within) ** (0.5 if n == 1 else 2 / 3)
+    found = _nobles(target[0], within, delta) if n == 1 else _cubics(target, within, delta)
+    k = _modes(n, ceil(min(10 / delta, REACH)))
     best, least = None, None
     for field, vector in found:
-        rotation = Rotation(name, field.polynomial, (field.low, field.high), vector)
+        rotation = Rotation("", field.polynomial, (field.low, field.high), vector)
         if any(low < w - within or high > w + within
                for (low, high), w in zip(rotation.turns(30), target)):
             continue
-        c = float(_near_part(np.array([rotation.floats]), k, abs(k).sum(1), float(delta))[0])
+        c = float(_near_part(np.array([rotation.floats]), k, abs(k).sum(1), delta)[0])
         if least is None or c < least:
             best, least = rotation, c
     if best is None:
-        raise ValueError("no rotation vector was found within %s of %s; give a larger tolerance"
+        raise ValueError("no rotation vector was found within %s of %s; give fewer decimals"
                          % (short_text(within), " ".join(map(short_text, target))))
     return best
 
 
-def _about(number):
-    """The number; a float stands for its decimal, since no theorem rests on it."""
-    return exact(repr(float(number)) if isinstance(number, float) else number)
-
-
 # ---- one angle
+
+Interval = Tuple[Tuple[int, int], Tuple[int, int]]      # neighbours p/q and r/s of a Farey sequence
+
+
+def noble(interval: Interval) -> Rotation:
+    """The noble number (p t + r)/(q t + s), t the golden mean, between p/q and r/s.  With its ends
+    exchanged an interval has another one, nearer to p/q."""
+    field = Field(GOLDEN, real_roots(GOLDEN)[-1])
+    above, below = zip(*interval)
+    return Rotation("", field.polynomial, (field.low, field.high), (_quotient(
+        field, ((Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))), above, below),))
+
 
 def _nobles(w: Fraction, within: Fraction, delta: float) -> List[Candidate]:
     """The most promising noble numbers of the Farey intervals that meet the range but do not lie
     within smaller ones that do."""
-    field = Field(GOLDEN, real_roots(GOLDEN)[-1])
-    g, one = (Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))
-    low, high, t = w - within, w + within, float(field.bounds(g, 20)[0])
-    intervals = [((1, p), (1, p + 1)) for p in range(floor(low), ceil(high))]
+    low, high, t = w - within, w + within, (5 ** 0.5 - 1) / 2
+    intervals: List[Interval] = [((p, 1), (p + 1, 1)) for p in range(floor(low), ceil(high))]
     found, omega = [], []
     while intervals:
-        (q, p), (r, s) = intervals.pop()
-        for weights, (x, y) in (((one, g), (1, t)), ((g, one), (t, 1))):
-            value = (x * p + y * s) / (x * q + y * r)
+        (p, q), (r, s) = left, right = intervals.pop()
+        for interval, value in (((left, right), (p * t + r) / (q * t + s)),
+                                ((right, left), (r * t + p) / (s * t + q))):
             if abs(value - w) <= within:
-                found.append((weights, (p, s), (q, r)))
+                found.append(interval)
                 omega.append(value)
-        if not low <= Fraction(p, q) < Fraction(s, r) <= high:
-            middle = q + r, p + s
-            intervals += [ends for ends in (((q, p), middle), (middle, (r, s)))
-                          if Fraction(ends[0][1], ends[0][0]) < high
-                          and low < Fraction(ends[1][1], ends[1][0])]
+        if not low <= Fraction(p, q) < Fraction(r, s) <= high:
+            middle = p + r, q + s
+            intervals += [(a, b) for a, b in ((left, middle), (middle, right))
+                          if Fraction(*a) < high and low < Fraction(*b)]
     score = _near_part(np.array(omega)[:, None], np.arange(1, SEEN + 1)[:, None],
                        np.arange(1.0, SEEN + 1), delta)
-    return [(field, (_quotient(field, *found[j]),)) for j in np.argsort(score)[:COMPARED]]
+    return [(each.field, each.vector) for each in (
+        noble(found[j]) for j in np.argsort(score, kind="stable")[:COMPARED])]
 
 
 def _quotient(field, weights, above, below):
@@ -136,7 +170,7 @@ def _cubics(target, within, delta) -> List[Candidate]:
     found = []
     for polynomial in FIELDS:
         field = Field(polynomial, real_roots(polynomial)[-1])
-        bases, roots = _bases(field), np.roots(polynomial[::-1])
+        bases, roots = _bases(polynomial), np.roots(polynomial[::-1])
         roots = roots[np.argsort(abs(roots - _value(field)))]           # t first
         values = bases @ np.vander(roots, 3, increasing=True).T         # (bases, weights, roots)
         for triangle in _triangles(target, within):
@@ -165,10 +199,11 @@ def _value(field) -> float:
     return float(field.bounds(field.t, 20)[0])
 
 
-def _bases(field) -> np.ndarray:
+@lru_cache(maxsize=None)
+def _bases(polynomial: Polynomial) -> np.ndarray:
     """Triples of positive integers of the field with determinant 1 or -1, of comparable size and in
     all orders: shape (number, 3, 3), coefficients of 1, t, t^2 last."""
-    t = _value(field)
+    t = _value(Field(polynomial, real_roots(polynomial)[-1]))
     elements = np.array(list(product(range(-HIGHEST, HIGHEST + 1), repeat=3)))
     value = elements @ np.array([1, t, t * t])
     elements, value = elements[value > 1e-9], value[value > 1e-9]
@@ -183,11 +218,31 @@ def _bases(field) -> np.ndarray:
     return np.concatenate([elements[triples[:, order]] for order in permutations(range(3))])
 
 
+def halves(triangle: Triangle) -> Tuple[Triangle, Triangle]:
+    """The two triangles that the mediant of the hypotenuse, their new right angle, cuts a triangle
+    into: the left one and the right one."""
+    a, b, c = triangle
+    x, y, q = (i + j for i, j in zip(a, c))
+    return (b, (x, y, q), a), (c, (x, y, q), b)
+
+
+def triangles(w0: Fraction, w1: Fraction) -> Iterator[Tuple[Triangle, str]]:
+    """The Farey triangles that contain a vector of the unit square, each a half of the one before,
+    without end: (corners, address).  A point on the cut counts as lying to the right."""
+    cell, address = UPPER if w0 + w1 >= 1 else LOWER, ""
+    while True:
+        yield cell, address
+        left, right = halves(cell)
+        side = determinant([cell[1], left[1], (w0, w1, 1)]) * determinant([cell[1], left[1],
+                                                                           cell[2]]) >= 0
+        cell, address = (right if side else left), address + "lr"[side]
+
+
 def _triangles(target, within) -> Iterator[Triangle]:
     """The Farey triangles that hold the target, each half of the one before (Kim and Ostlund),
     until they lie within the tolerance or have large denominators."""
     base = tuple(floor(w) for w in target)
-    for cell, _ in farey.triangles(*(w - b for w, b in zip(target, base))):
+    for cell, _ in triangles(*(w - b for w, b in zip(target, base))):
         corners = tuple((q, p0 + base[0] * q, p1 + base[1] * q) for p0, p1, q in cell)
         if max(q for q, *_ in corners) ** 3 * within ** 2 >= LARGEST ** 3:
             return
@@ -237,32 +292,3 @@ def _near_part(omega, k, size, delta) -> np.ndarray:
     height = np.where(x <= n, np.exp(-x), (n / (np.e * np.maximum(x, 1e-9))) ** n)
     divisor = 2 * abs(np.sin(np.pi * (omega @ k.T)))
     return (height / np.maximum(divisor, 1e-300)).max(1)
-
-
-def number(text):
-    try:
-        return exact(text)
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-
-
-def run(options):
-    if len(options.place) > 2:
-        raise ConverseError("a place has one number or two, not %d" % len(options.place))
-    try:
-        print(near(*options.place, tolerance=options.tolerance).text())
-    except ValueError as error:
-        raise ConverseError(str(error)) from None
-    return 0
-
-
-def main(argv=None):
-    p = Parser(prog="near.py", description="Finds a rotation vector with good small divisors.")
-    p.add_argument("place", nargs="+", metavar="W", type=number, help="a component, in turns")
-    p.add_argument("--tolerance", type=number, default=TOLERANCE, metavar="T",
-                   help="how far each component may be away (default 0.001)")
-    return ended("near.py", lambda: run(p.parse_args(argv)), lambda: "no vector is chosen")
-
-
-if __name__ == "__main__":
-    sys.exit(main())

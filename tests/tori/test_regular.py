@@ -1,0 +1,114 @@
+"""Tori that are made of orbits: the regular orbits are found, and the others refused."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from converse import FroeschleMap, MuldoonMap, StandardMap, SymplecticMap, tori
+from converse.tori.continuation import Found, Way
+from converse.tori.find import NotFound, find
+from converse.tori.newton import best_frame
+from converse.tori.regular import Orbits, _resonant, regular, with_rotation
+from converse.tori.rotation import read_rotation
+
+
+def two_harmonics(K1, name="K1"):
+    return SymplecticMap([(1, 0, "-1/2"), (2, 0, "-1/2")], [0, "0.2"], [[1, 0]], [K1], [name])
+
+
+@pytest.mark.parametrize("K1", ["0.207", "0.212", "0.42", "0.575"])
+def test_circles_are_found_beyond_the_gaps(K1):
+    torus = find(two_harmonics(K1))
+    w, = torus.rotation.floats
+    assert 0.13 < w < 0.28 and torus.rotation.polynomial == (-1, 1, 1)
+    x, J = torus.x([1.0])[0], torus.J([1.0])[0]
+    for m in range(20):                 # the orbit stays on it
+        J += float(K1) * np.sin(x) + 0.4 * np.sin(2 * x)
+        x += J
+    assert x == pytest.approx(torus.x([1.0 + 40 * np.pi * w])[0], abs=1e-6)
+
+
+@pytest.mark.parametrize("K1", ["0.30", "0.515", "0.55"])
+def test_where_absence_is_proved_nothing_is_found(K1):
+    with pytest.raises(NotFound, match="at K1 = %g no orbit is seen that is regular" % float(K1)):
+        find(two_harmonics(K1))
+
+
+def test_an_island_is_no_circle():
+    """The chain of 163 islands at K1 = 0.587 is as regular as a circle."""
+    seen = regular(Orbits(two_harmonics("0.587").potential()))
+    assert seen and all(abs(orbit.rotation[0] - 34 / 163) > 1e-4 for orbit in seen)
+
+
+@pytest.mark.parametrize("vector, resonant", [
+    ((0.3006387, 0.2922641), True), ((0.25, 0.3141592), True), ((0.3333338, 0.25), True),
+    (read_rotation("V1").floats, False), (read_rotation("spiral").floats, False)])
+def test_resonant_vectors_are_refused(vector, resonant):
+    assert _resonant(np.array([vector]), 45, 3e-8) == [resonant]
+
+
+def test_the_golden_circle_is_the_last_of_the_standard_map():
+    best = regular(Orbits(StandardMap("0.9714").potential()))[0]
+    assert min(best.rotation[0], 1 - best.rotation[0]) == pytest.approx((3 - 5 ** 0.5) / 2)
+    assert not regular(Orbits(StandardMap("1").potential()))
+
+
+@pytest.mark.parametrize("source, rotation", [
+    (StandardMap("0.9"), "golden"), (SymplecticMap([(2, 0, Fraction(1, 7))], ["0.15"]), "silver"),
+    (SymplecticMap([(1, 0), (2, 0, Fraction(1, 6))], ["0.3", "-0.04"]), "t^2+t-1: 2-t"),
+    pytest.param(MuldoonMap(epsilon="0.004"), "T49", marks=pytest.mark.slow)])
+def test_an_orbit_and_continuation_lead_to_the_same_torus(source, rotation):
+    """Above its rotation number, below it, and beyond one turn."""
+    potential, rotation = source.potential(), read_rotation(rotation)
+    orbits = Orbits(potential)
+    orbit = with_rotation(orbits, rotation)
+    assert orbit.rotation == rotation.floats and orbit.change < 1e-8
+    amplitude = np.array(potential.amplitude, float)
+    made = Way(potential, rotation, 1 << 16, amplitude, amplitude).of_orbit(orbits, orbit)
+    assert isinstance(made, Found)
+    followed = Way(potential, rotation, 1 << 16, 0 * amplitude, amplitude).follow()
+    assert abs(made.mesh.moved(made.u, followed.mesh) - followed.u).max() < 1e-9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("source, modes", [(FroeschleMap("0.45", "0.1"), 40000)])
+def test_tori_of_two_angles_are_found(source, modes):
+    torus = find(source)
+    assert torus.dimension == 2 and len(torus.k) < modes
+
+
+def test_the_frame_follows_the_decay():
+    k = np.array([(i, j) for i in range(-20, 21) for j in range(-20, 21)]).T
+    for frame in (((1, 0), (0, 1)), ((1, 1), (1, -1)), ((2, 1), (1, -1))):
+        row = np.array(frame) @ k
+        assert best_frame(k, np.exp(-0.3 * abs(row[0]) - 1.5 * abs(row[1]))) in (
+            frame, frame[::-1])
+
+
+def test_a_rotation_number_is_taken_near_a_place():
+    torus = find(two_harmonics("0.207"), near=(0.178,))
+    assert torus.rotation == tori.nearest((0.178,)) and abs(torus.rotation.floats[0] - 0.178) < 1e-3
+    with pytest.raises(ValueError, match="not by both"):
+        find(StandardMap("0.5"), "golden", near=(0.6,))
+    with pytest.raises(ValueError, match="near 0.3, 0.2 has 2 components; give 1"):
+        find(StandardMap("0.5"), near=(0.3, 0.2))
+
+
+@pytest.mark.slow
+def test_a_range_takes_the_vector_of_its_stronger_end():
+    pieces = find(two_harmonics(("0.41", "0.42")))
+    assert [torus.piece[0] for torus in pieces][0] == -1 and pieces[-1].piece[1] == 1
+
+
+def test_a_grid_of_values_is_scanned():
+    """Circles come back: the values at which they are seen are no interval."""
+    found = list(tori.scan(two_harmonics(("0.2", "0.6")), ["0.2", "0.3", "0.42"], points=1 << 14))
+    assert [bool(each.orbits) for each in found] == [True, False, True]
+    assert [each.rotation is not None for each in found] == [True, False, True]
+    assert [each.value for each in found] == [Fraction("0.2"), Fraction("0.3"), Fraction("0.42")]
+    assert found[1].size == 0 < found[2].size < found[0].size
+    with pytest.raises(ValueError, match="0 named parameters with a range"):
+        next(tori.scan(StandardMap("0.9")))
+    with pytest.raises(ValueError, match="values is 1"):
+        next(tori.scan(StandardMap(("0.9", 1)), 1))
