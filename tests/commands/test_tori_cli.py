@@ -127,6 +127,26 @@ def test_too_little_memory_is_said(run):
     assert "GB of memory, and 1e-06 GB may be used By hand --memory;" in flat(out)
 
 
+MINE = """{"parameters": {"K1": ["%s", "%s"]}, "harmonics": [
+    {"k": [1], "amplitude": {"K1": 1}, "phase": "-1/2"},
+    {"k": [2], "amplitude": "0.2", "phase": "-1/2"}]}"""
+
+
+@pytest.mark.parametrize("rotation", [[], ["--rotation", "0.2372"],
+                                      ["--rotation", "[0; 4, 4, 1, ...]"]])
+def test_a_circle_beyond_a_gap_is_proved(run, tmp_path, rotation):
+    """At K1 = 0.30 there is none, and none is found."""
+    problem = tmp_path / "mine.json"
+    problem.write_text(MINE % ("0.42", "0.42"))
+    status, out, err = run("prove", problem, *rotation)
+    assert status == 0 and "V(y) = 0.42 cos y + 0.2 cos(2 y)" in out
+    assert not rotation or "= [0; 4, 4, 1, 1, ...]" in out
+    problem.write_text(MINE % ("0.30", "0.30"))
+    status, out, err = run("prove", problem)
+    assert (status, err) == (1, "")
+    assert "Not found  at K1 = 0.3 no orbit is seen that is regular and not resonant" in out
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("numbers,rotation", [
     ((".98", "0", "0"), "golden"), (("0.158122476", "0.158122476", "0.316244952"), "T49")])
@@ -142,15 +162,15 @@ def test_beyond_the_last_torus_there_is_no_theorem(run, tmp_path, numbers, rotat
 
 @pytest.mark.parametrize("arguments,words", [
     ([], "COMMAND"), (["prove", "nowhere.in", "--rotation", "golden"], "nowhere.in"),
-    (["prove", K09], "which torus?"), (["prove", TRIG, "--rotation", "golden"], "two angles"),
+    (["prove", TRIG, "--rotation", "golden"], "two angles"),
     (["prove", K09, "--rotation", "T49"], "one angle"),
     (["prove", K09, "--rotation", "t^2-1: t"], "reducible"),
-    (["prove", K09, "--rotation", "0.618"], "not a rotation vector"),
+    (["prove", K09, "--rotation", "0.618x"], "not a rotation vector"),
     (["prove", K09, "--rotation", "golden", "--memory", "x"], "'x'"),
     (["prove", RANGE, "--rotation", "T49"], "--together"),
     (["prove", "two.json", "--rotation", "golden"], "2 parameters"),
     (["prove", "two.json", "--rotation", "golden", "--together"], "--together"),
-    (["prove", "zero.in", "--rotation", "golden"], "no wave"),
+    (["prove", "zero.in", "--rotation", "golden"], "V is 0"),
     (["prove", K09, "--rotation", "golden", "--rho", "0.1"], "--rho"),
     (["prove", K09, "--rotation", "golden", "--memory", "-1"], "above 0"),
     (["prove", K09, "--rotation", "golden", "-b", "zero.in"], "zero.in: exists"),
@@ -191,7 +211,7 @@ def test_each_step_of_a_long_run_is_told(run, monkeypatch):
     status, _, err = run("prove", K09, "--rotation", "golden")
     assert status == 0 and all(map(one_line, err.splitlines(keepends=True)))
     steps = iter(err.splitlines())      # in this order
-    for words in ("looking for the torus at 0.9, on ", "refining a torus of ",
+    for words in ("looking for the torus of an orbit, on ", "refining a torus of ",
                   "verifying the torus", "verifying: the constants", "verifying: the residual"):
         assert any(step.startswith("converse-tori: " + words) for step in steps)
 
