@@ -73,9 +73,10 @@ def run(options):
     kept = options.restore or options.backup
     if options.restore and options.backup:
         raise ConverseError("-r goes on in the file that it names; leave out -b")
-    if kept is None and _is_diagram(options.input):
-        if options.budget is not None:
-            raise ConverseError("--budget is for a search; go on with -r " + options.input)
+    if _is_diagram(options.input):
+        if kept is not None or options.budget is not None:
+            raise ConverseError("%s: is a diagram; to continue it, give -r %s and no input" % (
+                (options.input,) * 2))
         kept = options.input
         found = Diagram.load(kept)
     else:

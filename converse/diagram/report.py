@@ -6,6 +6,7 @@ from ..model.problem import Problem
 from ..model.statement import TORUS, ended, indented, labelled, map_lines, whole
 from ..storage.kept import headline, verify_text
 
+MOST_BOXES = 40                         # that a report lists
 TERMS = 8                               # of a continued fraction
 PLACES = 12                             # of the components of a rotation vector
 
@@ -13,12 +14,12 @@ PLACES = 12                             # of the components of a rotation vector
 def report(diagram, file=None):
     """Diagram.report()."""
     two, names, lines = diagram.family.dimension == 2, diagram.names, []
-    torus, values = TORUS[diagram.family.dimension], [
-        whole(box_words(names, box)) for box in diagram.boxes]
+    torus = TORUS[diagram.family.dimension]
+    values = _listed(names, diagram.boxes)
     tori = [(whole(box_words(names, member.box)), member.rotation)
             for member in sorted(diagram.members, key=lambda member: member.box)
             if member.rotation is not None]
-    larger = [whole(box_words(names, member.box)) for member in diagram.members if member.larger]
+    larger = _listed(names, [member.box for member in diagram.members if member.larger])
     if values:
         lines += ["has no %s J = P + S'(y)%s, P constant, S periodic and C1, for %s" % (
             torus, " over both angles" * two, "; ".join(values))]
@@ -35,6 +36,14 @@ def report(diagram, file=None):
     for label, text in _grounds(diagram, tori, file):
         lines += labelled(label, text)
     return "\n".join(lines) + "\n"
+
+
+def _listed(names, boxes):
+    """The values of the boxes in words; the number of the boxes if there are too many."""
+    if len(boxes) > MOST_BOXES:
+        return ["every (%s) in %d boxes, which the attributes `none` and `members` of the diagram, "
+                "and converse-check, list" % (", ".join(names), len(boxes))]
+    return [whole(box_words(names, box)) for box in boxes]
 
 
 def _grounds(diagram, tori, file):
@@ -55,7 +64,7 @@ def _grounds(diagram, tori, file):
         yield "Seen", "%s: a torus, not proved, rotation %s" % (
             box_words(diagram.names, [(x, x) for x in each.value]),
             ", ".join("%.9g" % x for x in each.rotation))
-    yield "Search", "%d proofs that there is none, %d of tori; %s points of orbits, %.0f s" % (
+    yield "Proofs", "%d of no torus, %d of tori; %s points of orbits, %.0f s" % (
         len(diagram.members) - len(tori), len(tori), format(diagram.points, ","), diagram.seconds)
     if diagram.sha256:
         yield "SHA-256", diagram.sha256

@@ -153,7 +153,9 @@ def test_nothing_proved(input_file, capsys):
     (("{one}", "-b", "no/a.map"), "cannot be written"), (("{one}", "-g", "a.ps"), ".svg or .png"),
     (("{one}", "-b", "a.svg", "-g", "a.svg"), "would overwrite"),
     (("{one}", "-b", "a.map", "-r", "a.map"), "leave out -b"),
-    (("-r", "{plane}", "{one}"), "of another family"), (("{plane}", "--budget", "1"), "go on with"),
+    (("-r", "{plane}", "{one}"), "of another family"),
+    (("{plane}", "--budget", "1"), "is a diagram"),
+    (("{plane}", "-b", "b.map"), "is a diagram"),
     (("{unused}",), "no amplitude depends on"), (("{part}",), "a part of the torus")])
 def test_bad_usage_is_one_line(input_file, made, tmp_path, monkeypatch, capsys, arguments, words):
     monkeypatch.chdir(tmp_path)
