@@ -151,19 +151,6 @@ def test_another_xstar():
     assert not sharper(POINTS["Froeschlé, B = 0.3"][1]("0.62"), xstar=("0.31", "3.04")).linked
 
 
-def test_single_points_of_planes():
-    table = re.findall(r"^\| \((.*?)\) \| [0-9.]+ \| ([0-9.]+) \| \((.*?)\) \| ([0-9,]+) \|$",
-                       PAGES["map.md"], re.MULTILINE)
-    assert len(table) == 2
-    for direction, point, xstar, prisms in table:
-        abc = [Fraction(point) * Fraction(d) for d in direction.split(", ")]
-        counts = sharper(Problem(MuldoonMap(*abc)), tuple(xstar.split(", ")))
-        assert counts.proved == number(prisms), direction
-    corner = [sharper(Problem(MuldoonMap(a, 0, "0.51"))).proved for a in ("0", "0.0005")]
-    assert corner == [*said("map.md", "at c = 0.51 the proof takes ([0-9,]+) prisms"),
-                      *said("map.md", "at a = 0.0005 the proof takes ([0-9]+)")]
-
-
 @pytest.mark.slow
 def test_the_torus_of_the_tutorial(tmp_path):
     """Residuals differ between machines, by a factor of two."""
