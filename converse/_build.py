@@ -11,12 +11,13 @@ SOURCES = ["arith/apm", "arith/special", "arith/guard", "arith/machine",
            "loewner/problem", "loewner/start", "loewner/score", "loewner/method",
            "loewner/engine", "loewner/engine_avx2", "loewner/engine_avx512",
            "model/patch", "model/region", "model/stationary", "model/torus",
-           "search/setup", "search/tree", "search/lookahead",
+           "search/setup", "search/tree", "search/threads",
            "orbits/potential", "orbits/band", "orbits/relax", "orbits/average"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 
 # The flags are part of the proof: no fused, reordered or extended floating-point arithmetic.
 FLAGS = ["-std=c11", "-ffp-contract=off", "-fno-fast-math", "-fexcess-precision=standard",
+         "-pthread",
          "-fno-math-errno"]             # sqrt without a look at errno is one instruction
 if "CFLAGS" not in os.environ:
     # -fpeel-loops unrolls short loops with constant ends: without it the proof of 0.0140 took 18 %
@@ -34,4 +35,5 @@ ffi.cdef('extern "Python+C" int cv_python_interrupts(void);')
 ffi.set_source("converse._native", "".join(map('#include "%s"\n'.__mod__, HEADERS)),
                sources=SOURCES,
                include_dirs=["csrc"], libraries=["gmp"], extra_compile_args=FLAGS,
+               extra_link_args=["-pthread"],
                depends=sorted(glob.glob("csrc/**/*.*", recursive=True)))

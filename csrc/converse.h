@@ -6,8 +6,7 @@
 /* Return values. */
 enum {
     CV_OK = 0,
-    CV_RUNNING = 1,          /* the search wants to be stepped again */
-    CV_LONG = 2,             /* the next prism needs a longer orbit than was allowed */
+    CV_RUNNING = 1,          /* the threads of the search are at work */
     CV_ENOMEM = -1,
     CV_ENUMBER = -2,         /* a string is not a decimal number, or out of range */
     CV_EARGUMENT = -3,       /* an argument makes no sense (a negative half-width, dp < 1, ...) */
@@ -62,14 +61,6 @@ enum { CV_MAX_CUTS = 50 };
 
 typedef struct cv_search cv_search;
 
-/* A request to stop.  It may be made by another thread, while a call that was given it is under
-   way and will then return soon.  Calls that may be given NULL cannot be stopped. */
-typedef struct cv_stop cv_stop;
-cv_stop *cv_stop_new(void); /* NULL: no memory */
-void cv_stop_free(cv_stop *stop);
-void cv_stop_set(cv_stop *stop);
-int cv_stop_get(const cv_stop *stop);
-
 /* A wave of the potential V, -p sin(k.y + phase), whose amplitude p moves with the parameters, each
    in [-1, 1]: p = amplitude + t_1 part[0] + t_2 part[1] + t_3 part[2]. */
 typedef struct {
@@ -96,45 +87,63 @@ typedef struct {
    separate parameter, in the identity frame and without shifts.
    xstar: the two coordinates of the starting point, or NULL to have one chosen.
    longest: the most points of an orbit, or 0 for as many as the method can follow.  -n: n points,
-   and cv_step returns CV_LONG instead of deciding a prism whose orbit may need more.
+   and the work ends before a prism whose orbit may need more: then `needs_long` of cv_look is 1.
    On success *s must be freed with cv_search_free.  It begins with the root as its only prism. */
 int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xstar[2], int method,
                   int dp, int depth, int stubborn, int as_printed, int longest);
 void cv_search_free(cv_search *s);
 
-/* Sets up what every step needs, the bounds over the torus first of all.  CV_RUNNING: it was
-   stopped; then, and after an error, the search can only be freed. */
-int cv_prepare(cv_search *s, const cv_stop *stop);
-
 /* Forgets tree and counts; n prisms are to be decided now, the first of them first. */
 int cv_restart(cv_search *s, int n, const cv_cell *cells);
 
-/* Takes up a tree that a search of this kind grew before: its nodes are counted, and the prisms
-   that it leaves untried, '?' or missing at its end, are pending.  CV_EARGUMENT: it is no such
-   tree. */
-int cv_resume(cv_search *s, const char *tree, size_t length);
+/* Takes up a tree that a search of this kind grew before: the prisms that it leaves untried, '?' or
+   missing at its end, are pending.  Its nodes do not count.  hints: of the first of these prisms,
+   as cv_look told them; the others have 0.  A lower-case letter is a leaf of which the search knows
+   nothing.  CV_EARGUMENT: it is no such tree. */
+int cv_resume(cv_search *s, const char *tree, size_t length, const int *hints, int n_hints);
 
-/* Decides at most max_leaves further prisms, or follows orbits of about max_points in all, or works
-   for about max_seconds; stopped, it forgets the prism at hand.  CV_RUNNING: there is more to do.
-   CV_OK: all prisms are decided, or an undecided one ended a search that is not stubborn.
-   CV_LONG: see cv_search_new; the tree so far does not depend on `longest`.
-   CV_ENOMEM: the tree is good as far as it was grown.  CV_EMACHINE: the arithmetic breaks the
-   rules, before the step or after it: nothing that the search did since cv_restart may be used. */
-int cv_step(cv_search *s, long max_leaves, double max_points, double max_seconds,
-            const cv_stop *stop);
+/* Lets threads work: the first one sets the search up, if that was not done (the bounds over the
+   torus first of all), and then it and the others, if there is work enough, decide prisms.  With no
+   thread the search is only set up.  They end when all prisms are decided, when an undecided one
+   ends a search that is not stubborn, and when max_leaves further leaves are decided or the orbits
+   of the prisms that were decided since cv_restart have max_points further points.  Tree, counts
+   and the place of the end are the same for any number of threads.  CV_ENOMEM: no memory, or no
+   thread.  Any other error: one of before, or the setting up was broken off; then the search can
+   only be freed. */
+int cv_start(cv_search *s, int threads, long max_leaves, double max_points);
+/* Waits for the threads, for about so many seconds.  CV_RUNNING: they are at work.  CV_OK: they
+   have ended.  CV_ENOMEM: memory ran out; the tree is good as far as it was grown.  CV_EMACHINE:
+   the arithmetic breaks the rules, before the work or after it: nothing that the search did since
+   cv_restart may be used. */
+int cv_wait(cv_search *s, double seconds);
+/* Ends the threads soon.  Prisms that are being tried are forgotten. */
+void cv_halt(cv_search *s);
 
-/* The prisms yet to be decided, the next one first: how many, and, unless cells is NULL, which. */
-int cv_pending(const cv_search *s, cv_cell *cells);
+/* The prisms yet to be decided, the next one first: how many, and, unless cells is NULL, which.
+   What became of some of them may be known; their tries do not count yet. */
+int cv_pending(cv_search *s, cv_cell *cells);
 
-const char *cv_tree(const cv_search *s, size_t *length); /* nodes so far, in preorder */
-const cv_counts *cv_get_counts(const cv_search *s);
-const int *cv_steps(const cv_search *s); /* of each node: its orbit's length */
+/* A search as it is, whether or not threads are at work. */
+typedef struct {
+    cv_counts counts;
+    double examined; /* the share of the root, by volume, in leaves; it never falls */
+    int finished; /* are all prisms decided, or does an undecided one end the search? */
+    int needs_long; /* see cv_search_new; the tree so far does not depend on `longest` */
+    size_t length;
+    char *tree; /* nodes in preorder, '?' for those that are pending */
+    int *steps; /* of each leaf its orbit's length, -1 if it was taken up; the hint of a '?' */
+} cv_view;
+/* from: the number of the first node to see; above that of nodes before the first '?', none.
+   CV_OK or CV_ENOMEM. */
+int cv_look(cv_search *s, size_t from, cv_view *view);
+void cv_forget_view(cv_view *view);
+
 /* Mather's criterion, for the method Loewner and odd V.  1: B > 10/3 on the whole patch; 2: there
    is one parameter, and B > 10/3 at its upper end t_1 = 1; 0: neither.  With 1 or 2 the theorem
    also holds for every multiple s >= 1 of these amplitudes. */
 int cv_at_once(const cv_search *s);
-/* A coordinate, 0 or 1, of the starting point, and after cv_prepare a constant of the theorem,
-   CV_T, ...: as exact decimals, which the caller frees.  NULL: no memory. */
+/* A coordinate, 0 or 1, of the starting point, and once the search is set up a constant of the
+   theorem, CV_T, ...: as exact decimals, which the caller frees.  NULL: no memory. */
 char *cv_xstar(const cv_search *s, int coordinate);
 char *cv_constant(const cv_search *s, int which);
 void cv_free(char *text);

@@ -5,27 +5,29 @@ import time
 PATIENCE = 300                      # seconds: a process that takes longer hangs
 
 # The command, that decides so many prisms, makes a file and waits until that is gone, or it is to
-# stop.  Its worker waits, as if it were long at work; there is to be but one.
+# stop.
 HELD = """
 import sys, time
 from pathlib import Path
 from converse.commands.prove import main
 from converse.prover import native
-sign, left, grow = Path(sys.argv.pop(1)), int(sys.argv.pop(1)), native.grow
-def grow_or_wait(task, cells, seconds, leaves, want_steps, stop):
-    global left
-    if left == 0:
-        sign.touch()
-        while sign.exists() and not stop.is_set():
+sign, left, work = Path(sys.argv.pop(1)), int(sys.argv.pop(1)), native.Search.work
+def work_or_wait(self, threads, look, *limits):
+    if threads == 0 or limits:                  # not the proof itself
+        return work(self, threads, look, *limits)
+    if not work(self, threads, look, left) or self.view().finished:
+        return work(self, threads, look)
+    sign.touch()
+    try:
+        while sign.exists():
+            if look():
+                return False
             time.sleep(0.005)
-        if stop.is_set():
-            time.sleep(0.05)                    # what is to strike now has time for it
-        left = leaves
-    grown = grow(task, cells, seconds, min(left, leaves), want_steps, stop)
-    if grown is not None:
-        left -= sum(map(grown.text.count, "PSU"))
-    return grown
-native.grow = grow_or_wait
+    except BaseException:
+        time.sleep(0.05)                        # what is to strike now has time for it
+        raise
+    return work(self, threads, look)
+native.Search.work = work_or_wait
 sys.exit(main())
 """
 
@@ -36,16 +38,16 @@ import sys, time
 from pathlib import Path
 from converse.commands.prove import main
 from converse.prover import native
-sign, begin = Path(sys.argv.pop(1)), native.begin
-def begin_and_wait(task, tree, stop):
+sign, work = Path(sys.argv.pop(1)), native.Search.work
+def begin_and_wait(self, threads, look):
     sign.touch()
-    begun = begin(task, tree, stop)
-    if begun is not None:
+    done = work(self, threads, look)
+    if done:
         sign.write_text("whole")
-        while not stop.is_set():
+        while not look():
             time.sleep(0.005)
-    return begun
-native.begin = begin_and_wait
+    return done
+native.Search.work = begin_and_wait
 sys.exit(main())
 """
 

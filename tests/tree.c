@@ -1,7 +1,7 @@
 /* tree.c - the core without Python: grows the tree of the sharper method, three parameters or one,
    and prints it, so that machines can be compared (make arm).
 
-       tree a b c half-a half-b half-c together */
+       tree a b c half-a half-b half-c together [threads] */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -10,7 +10,7 @@
 int main(int argc, char **argv)
 {
     cv_wave waves[3] = { { .k = { 1, 0 } }, { .k = { 0, 1 } }, { .k = { 1, 1 } } };
-    const int together = argc == 8 && atoi(argv[7]);
+    const int together = argc > 7 && atoi(argv[7]);
     const cv_problem problem = { .n_waves = 3,
                                  .n_parameters = together ? 1 : 3,
                                  .waves = waves,
@@ -18,10 +18,11 @@ int main(int argc, char **argv)
                                  .half = { "1", "1" },
                                  .frame = { 1, 0, 0, 1 },
                                  .odd = 1 };
+    const int threads = argc == 9 ? atoi(argv[8]) : 1;
     cv_search *s;
-    size_t length;
+    cv_view view;
 
-    if (argc != 8)
+    if (argc < 8)
         return 2;
     for (int k = 0; k < 3; k++) {
         waves[k].phase = "0";
@@ -30,13 +31,15 @@ int main(int argc, char **argv)
             waves[k].part[m] = together || m == k ? argv[4 + k] : "0";
     }
     if (cv_search_new(&s, &problem, NULL, CV_LOEWNER, 35, 120, 0, 0, 0) != CV_OK ||
-        cv_prepare(s, NULL) != CV_OK)
+        cv_start(s, threads, 1L << 30, 1e300) != CV_OK)
         return 1;
-    while (cv_step(s, 1L << 40, 1e300, 1e9, NULL) == CV_RUNNING)
+    while (cv_wait(s, 1.0) == CV_RUNNING)
         continue;
     fprintf(stderr, "%d prisms at a time\n", s->method->lanes(s->work));
-    const char *const tree = cv_tree(s, &length);
-    fwrite(tree, 1, length, stdout);
+    if (cv_look(s, 0, &view) != CV_OK)
+        return 1;
+    fwrite(view.tree, 1, view.length, stdout);
+    cv_forget_view(&view);
     cv_search_free(s);
     return 0;
 }

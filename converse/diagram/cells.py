@@ -3,7 +3,7 @@ proved is halved."""
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Optional, Tuple
+from typing import Callable, Optional, Tuple
 
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
@@ -67,13 +67,13 @@ def search(diagram: Diagram, filling, points: int, tell) -> None:
     filling.work(next_task, take)
 
 
-def attempt(family: SymplecticMap, stop: Optional[native.Stop] = None
+def attempt(family: SymplecticMap, stop: Callable[[], bool] = bool
             ) -> Optional[Tuple[int, Optional[Proof]]]:
     """Tries to prove that no map of a family has invariant tori: the cost, in points of orbits, and
-    the proof or None.  None if stopped.  A worker calls it."""
+    the proof or None.  None: stop() returned True.  A worker calls it."""
     before = ready(Proof((Tree(Problem.of(family)),), Settings(method="loewner")))
-    grown = native.survey(native.Task(before.problem, before.settings, before.xstar), CELL_LEAVES,
-                          CELL_POINTS, stop)
+    grown = native.grow(native.Task(before.problem, before.settings, before.xstar), CELL_LEAVES,
+                        CELL_POINTS, look=stop)
     if grown is None:
         return None
     used = TRY_POINTS + sum(grown.steps)

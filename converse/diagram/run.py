@@ -7,7 +7,6 @@ from typing import Callable, Optional
 
 from ..model.exact import Number, exact
 from ..model.map import SymplecticMap
-from ..prover import native
 from ..prover.workers import Deadline, Filling, WorkerPool, check_options
 from ..storage.backup import Backup
 from ..storage.files import ConverseError, Path
@@ -79,7 +78,7 @@ def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = No
             raise TypeError("there must be a family, or the file of a diagram to continue")
         if len(diagram.ranges) == 1 and not diagram.members:
             diagram.sides = sides_of(diagram.family)
-        with Filling(diagram, backup, WorkerPool(executor, jobs, native.Stop()), deadline,
+        with Filling(diagram, backup, WorkerPool(executor, jobs), deadline,
                      lambda: progress and progress(diagram)) as filling:
             cells.search(diagram, filling, int(seconds * POINTS_A_SECOND),
                          tell or (lambda text: None))

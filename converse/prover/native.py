@@ -2,18 +2,17 @@
 
 import math
 import os
-import threading
-from dataclasses import asdict, dataclass, fields, replace
+import re
+from dataclasses import asdict, dataclass, fields
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from typing import Dict, List, Optional, Tuple
+from typing import Any, List, Optional, Tuple
 
 from ..model.exact import decimal_text
 from ..model.problem import Problem
 from ..storage.files import ConverseError
 from ..version import __version__
-from . import tree
 from .settings import Settings
 
 
@@ -71,6 +70,13 @@ def check(code):
 
 
 TOO_LONG = lib.CV_REASON_TOO_LONG       # index of Counts.reasons
+LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
+MANY = 2 ** 30                      # No search has as many leaves.
+NO_NODE = 2 ** 31                   # The number of no node, for cv_look.
+OLD = -1                            # The orbit's length of a node that was taken up.
+
+
+UNTRIED = re.compile(r"\?")
 MAXIMA = "most_cuts", "max_steps", "max_NTsteps"    # of Counts: all other fields are sums
 
 
@@ -149,29 +155,41 @@ class Task:
     longest: int = ORDINARY
 
 
-@dataclass(frozen=True)
-class Begun:
-    """The state of a search before the first prism is tried.
+@dataclass
+class View:
+    """A tree that may be growing.
 
-    A cell here is (index, cuts, hint), the hint being what the C core learnt from its parent."""
+    text: its nodes from a certain one on, in preorder, with a `?` for each untried prism.
+    steps: the lengths of their orbits, OLD for nodes that were taken up.
+    hints: of the untried prisms, in their order.
+    counts: the statistics, in which nodes that were taken up do not count.
+    settled: the same up to the first prism on which somebody works: what depends on it does not
+    depend on the workers.
+    examined: the share of parameters and angles that lies in leaves.
+    finished: is every prism decided, or one undecided in a search that is not stubborn?
+    needs_long: did it end before a prism that may need a longer orbit than the task allows?"""
 
-    xstar: Tuple[str, str]
-    constants: Dict[str, str]
-    at_once: bool
-    cells: List[tuple]                  # yet to be decided, in preorder
-    counts: Counts                      # of the nodes of the tree alone
+    text: str
+    steps: Any
+    hints: List[int]
+    counts: Counts
+    settled: Counts
+    examined: float
+    finished: bool
+    needs_long: bool
 
 
 @dataclass
 class Grown:
-    """The result of a worker: the text, the cells that follow it, the lengths of orbits; long: may
-    the first of the cells need a longer orbit than the task allows?"""
+    """What cells became: the text, the lengths of its nodes' orbits, its statistics, and the cells
+    yet to be decided that follow it, each (index, cuts, hint): see cv_cell in csrc/converse.h.
+    needs_long: as of View."""
 
     text: str
-    steps: List[int]                    # of each node; empty if nobody wants them
-    cells: List[tuple]
+    steps: List[int]
     counts: Counts
-    long: bool = False
+    cells: List[tuple]
+    needs_long: bool
 
 
 def native_text(text, owners):
@@ -208,13 +226,8 @@ def _nearly(phase):
     return decimal_text(Fraction(phase.numerator * scale // phase.denominator, scale))
 
 
-def _handle(stop):
-    """The argument of the C core for a Stop or None."""
-    return ffi.NULL if stop is None else stop.handle
-
-
 class Search:
-    """A search in the C core; stop: a Stop, or None."""
+    """A search in the C core, which begins with the whole root as its only cell."""
 
     def __init__(self, task):
         owners, settings = [], task.settings
@@ -225,47 +238,94 @@ class Search:
             METHODS[settings.method], settings.digits, settings.depth, settings.stubborn,
             settings.as_printed, task.longest))
         self.handle = ffi.gc(handle[0], lib.cv_search_free)
-        self.task = task
+        self.method = settings.method
 
-    def prepare(self, stop):
-        """Sets the search up; False if it was stopped, and then it is good for nothing."""
-        return check(lib.cv_prepare(self.handle, _handle(stop))) == lib.CV_OK
+    @property
+    def xstar(self):
+        return tuple(_decimal(lib.cv_xstar(self.handle, i)) for i in range(2))
 
-    def begin(self, tree):
-        """Takes up a tree; ConverseError if it does not belong to a search of this kind."""
-        if not tree.isascii():
+    @property
+    def constants(self):
+        """The numbers of the theorem, by name; 0 before the search is set up."""
+        return {name: _decimal(lib.cv_constant(self.handle, which))
+                for name, which in CONSTANTS[self.method].items()}
+
+    @property
+    def at_once(self):
+        return bool(lib.cv_at_once(self.handle))
+
+    def resume(self, text, hints):
+        """Takes up a tree; WrongTree if it does not belong to a search of this kind.
+
+        hints: of the first untried prisms, in their order."""
+        if not text.isascii():
             raise WrongTree()
-        code = lib.cv_resume(self.handle, tree.encode("ascii"), len(tree))
+        code = lib.cv_resume(self.handle, text.encode("ascii"), len(text), hints, len(hints))
         if code == lib.CV_EARGUMENT:
             raise WrongTree()
         check(code)
-        return Begun(self.xstar(),
-                     {name: _decimal(lib.cv_constant(self.handle, which)) for name, which
-                      in CONSTANTS[self.task.settings.method].items()},
-                     bool(lib.cv_at_once(self.handle)), *self._state())
 
-    def grow(self, cells, seconds, max_leaves, stop, want_steps, max_points=math.inf):
-        """Decides cells, and the cells that they are cut into, until about `seconds` passed or
-        there are max_leaves leaves or max_points points of orbits."""
-        check(lib.cv_restart(self.handle, len(cells), cells))
-        code = check(lib.cv_step(self.handle, max_leaves, max_points, seconds, _handle(stop)))
-        size = ffi.new("size_t *")
-        text, size = lib.cv_tree(self.handle, size), size[0]
-        return Grown(ffi.unpack(text, size).decode("ascii") if size else "",
-                     ffi.unpack(lib.cv_steps(self.handle), size) if size and want_steps else [],
-                     *self._state(), long=code == lib.CV_LONG)
+    def work(self, threads, look, leaves=MANY, points=math.inf):
+        """Lets threads decide prisms, until there are as many leaves more or the orbits have as
+        many points more; with 0 threads the search is only set up.  look() is called a few times a
+        second, and ends the work when it returns True.  Returns whether it did not.  A search whose
+        setting up was ended is good for nothing."""
+        try:
+            check(lib.cv_start(self.handle, threads, min(leaves, MANY), points))
+            while check(lib.cv_wait(self.handle, LOOK_SECONDS)) == lib.CV_RUNNING:
+                if look():
+                    return False
+            return True
+        finally:
+            lib.cv_halt(self.handle)
 
-    def _state(self):
-        pending = ffi.new("cv_cell[]", lib.cv_pending(self.handle, ffi.NULL))
-        lib.cv_pending(self.handle, pending)
-        counts = lib.cv_get_counts(self.handle)
-        values = {item.name: getattr(counts, item.name, 0) for item in fields(Counts)}
-        return ([(tuple(cell.index), tuple(cell.cuts), cell.hint) for cell in pending],
-                Counts(**{name: value if isinstance(value, int) else tuple(value)
-                          for name, value in values.items()}))
+    def view(self, start=None):
+        """The View of the tree from node number `start` on; None: without a text."""
+        view = ffi.gc(ffi.new("cv_view *"), lib.cv_forget_view)
+        check(lib.cv_look(self.handle, NO_NODE if start is None else start, view))
+        text = ffi.unpack(view.tree, view.length).decode("ascii") if start is not None and \
+            view.length else ""
+        counts = _counts(view.counts)
+        return View(text, _Steps(view), [view.steps[at.start()] for at in UNTRIED.finditer(text)],
+                    counts, counts, view.examined, bool(view.finished), bool(view.needs_long))
 
-    def xstar(self):
-        return tuple(_decimal(lib.cv_xstar(self.handle, i)) for i in range(2))
+    def cells(self):
+        """The cells yet to be decided, in preorder."""
+        cells = ffi.new("cv_cell[]", lib.cv_pending(self.handle, ffi.NULL))
+        lib.cv_pending(self.handle, cells)
+        return [(tuple(cell.index), tuple(cell.cuts), cell.hint) for cell in cells]
+
+    def grow(self, cells=None, leaves=MANY, points=math.inf, threads=1, look=bool):
+        """What these cells become, or those that are yet to be decided, when work() ends."""
+        if cells is not None:
+            check(lib.cv_restart(self.handle, len(cells), cells))
+        self.work(threads, look, leaves, points)
+        return self.grown()
+
+    def grown(self):
+        """What the cells have become."""
+        view, cells = self.view(0), self.cells()
+        size = len(view.text) - len(cells)
+        return Grown(view.text[:size], view.steps[:size], view.counts, cells, view.needs_long)
+
+
+class _Steps:
+    """The lengths of orbits in a cv_view, without a list of all."""
+
+    def __init__(self, view):
+        self.view = view
+
+    def __getitem__(self, at):
+        if isinstance(at, slice):
+            begin, end, _ = at.indices(self.view.length)
+            return ffi.unpack(self.view.steps + begin, end - begin) if end > begin else []
+        return self.view.steps[at]
+
+
+def _counts(counts):
+    values = {item.name: getattr(counts, item.name, 0) for item in fields(Counts)}
+    return Counts(**{name: value if isinstance(value, int) else tuple(value)
+                     for name, value in values.items()})
 
 
 def _decimal(text):
@@ -276,66 +336,14 @@ def _decimal(text):
     return str(Decimal(ffi.string(text).decode("ascii")))
 
 
-_mine = threading.local()               # each thread's last search: making one takes time
-
-
-def _search(task, stop):
-    """This thread's search for a task, or None if it was stopped while it was made."""
-    if getattr(_mine, "task", None) != task:
-        _mine.task = None
-        search = Search(task)
-        if not search.prepare(stop):
-            return None
-        _mine.search, _mine.task = search, task
-    return _mine.search
-
-
-class Stop:
-    """A request, which another thread of this process may make, that begin or grow return soon."""
-
-    def __init__(self):
-        self.handle = ffi.gc(lib.cv_stop_new(), lib.cv_stop_free)
-        if not self.handle:
-            raise MemoryError("there is not enough memory")
-
-    def set(self):
-        lib.cv_stop_set(self.handle)
-
-    def is_set(self):
-        return bool(lib.cv_stop_get(self.handle))
-
-
 def chosen_start(task):
     """The x* that a search would choose."""
+    return Search(task).xstar
+
+
+def grow(task, leaves=MANY, points=math.inf, threads=1, look=bool):
+    """What the root becomes: see Search.work.  None: look() returned True before the end."""
     search = Search(task)
-    return search.xstar()
-
-
-def begin(task, tree, stop):
-    """Sets up a search and takes up a tree.  Called by a worker; None if stopped."""
-    search = _search(task, stop)
-    if search is None:
+    if not (search.work(0, look) and search.work(threads, look, leaves, points)):
         return None
-    begun = search.begin(tree)
-    _mine.task = replace(task, xstar=begun.xstar)       # the search serves this, too
-    return begun
-
-
-def grow(task, cells, seconds, max_leaves, want_steps, stop=None):
-    """Grows cells.  Called by a worker; None if it was stopped before it could begin."""
-    try:
-        search = _search(task, stop)
-        return search and search.grow(cells, seconds, max_leaves, stop, want_steps)
-    except BaseException:
-        _mine.task = _mine.search = None    # nobody knows in what state it is
-        raise
-
-
-def survey(task, leaves, points, stop=None):
-    """Grows a tree from its root.  The search ends with `leaves` leaves or when its orbits had
-    about `points` points.  None if it was stopped before that."""
-    search = Search(task)
-    if not search.prepare(stop):
-        return None
-    grown = search.grow([(*tree.ROOT, 0)], math.inf, leaves, stop, True, points)
-    return None if grown.cells and stop is not None and stop.is_set() else grown
+    return search.grown()

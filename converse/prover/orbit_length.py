@@ -9,7 +9,6 @@ follows short orbits only.
 No theorem rests on this choice: it decides how much is tried."""
 
 from itertools import product
-from math import inf
 from typing import List, Optional, Sequence, Tuple
 
 from . import native
@@ -24,30 +23,31 @@ FIRST, FINER, AROUND = 6, 3, 3
 TRY_POINTS = 1 << 15
 
 
-def longest(problem, xstar, stop=None) -> Optional[int]:
+def longest(problem, xstar, threads=1, is_late=bool) -> Optional[int]:
     """The most points of an orbit in a search over x*, or 0 for as many as the core can follow.
-    None if it was stopped.
+    None if is_late() returned True before.
 
     No proof is known to need more than native.ORDINARY where waves depend on two combinations of
     the angles."""
     ends = product(*((0, (1 << CUTS) - 1) if any(part) else (0,) for part in problem.parts))
-    long = problem.is_flat and all(_all_proved(problem, xstar, end, stop) for end in ends)
-    if stop is not None and stop.is_set():
+    long = problem.is_flat and all(_all_proved(problem, xstar, end, threads, is_late)
+                                   for end in ends)
+    if is_late():
         return None
     return 0 if long else native.ORDINARY
 
 
-def _all_proved(problem, xstar, end: Sequence[int], stop) -> bool:
+def _all_proved(problem, xstar, end: Sequence[int], threads, is_late) -> bool:
     """Are the thinnest prisms proved, as far as they are tried, at this corner of the parameters'
-    ranges?  The answer means nothing if it was stopped."""
+    ranges?  The answer means nothing if it is late."""
     settings = Settings("loewner", CUTS * (1 + len(end)), stubborn=True)
     search = native.Search(native.Task(problem, settings, xstar, TRY_POINTS))
     axis, level, places = _axis(problem), FIRST, list(range(1 << FIRST))
-    while search.prepare(stop):
-        grown = search.grow([_thinnest(axis, level, place, end) for place in places], inf,
-                            len(places), stop, True)
-        if "U" in grown.text or level == CUTS:
-            return "U" not in grown.text
+    while search.work(0, is_late):
+        grown = search.grow([_thinnest(axis, level, place, end) for place in places],
+                            threads=threads, look=is_late)
+        if grown.cells or "U" in grown.text or level == CUTS:
+            return not grown.cells and "U" not in grown.text
         best = sorted(zip(grown.steps, places), reverse=True)[:AROUND]
         finer = min(level + FINER, CUTS)
         places = [(place << finer - level) + j for _, place in best

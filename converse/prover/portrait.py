@@ -396,23 +396,23 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
 
         tasks = ((x, column, portrait.patch, portrait.strip, portrait.depth, x)
                  for x in portrait.stars if x not in portrait.found)
-        with Filling(portrait, backup, WorkerPool(executor, jobs, native.Stop()), deadline,
+        with Filling(portrait, backup, WorkerPool(executor, jobs), deadline,
                      look) as filling:
             filling.work(lambda: next(tasks, None), take)
     return portrait
 
 
 def column(patch: Problem, strip: Fraction, depth: int, xstar: Fraction,
-           stop: Optional[native.Stop] = None) -> Optional[Tuple[Region, ...]]:
-    """The regions of a column, with their trees; None if stopped.  A worker calls it."""
+           stop: Callable[[], bool] = bool) -> Optional[Tuple[Region, ...]]:
+    """The regions of a column, with their trees; None: stop() returned True.  A worker calls
+    it."""
     star, found = (decimal_text(xstar), "0"), []
     for problem in regions_of(patch, strip, depth, star):
         low, high = problem.v0
         cuts = max(0, depth + round(math.log2(high - low)))     # half a turn has them all
         task = native.Task(problem, Settings(method="loewner", depth=cuts, stubborn=True), star)
-        begun = native.begin(task, "", stop)
-        grown = begun and native.grow(task, begun.cells, math.inf, 1 << 30, False, stop)
-        if not grown or grown.cells:
+        grown = native.grow(task, look=stop)
+        if grown is None:
             return None
         found.append(Region((low + high) / 2, (high - low) / 2,
                             problem.shifts[1][0] if problem.shifts else Fraction(0),

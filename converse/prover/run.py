@@ -1,6 +1,7 @@
 """prove(): one run of the search for a proof, from what is known before it to a Proof."""
 
 import concurrent.futures
+import contextlib
 import math
 import os
 import time
@@ -23,14 +24,17 @@ from .orbit_length import longest
 from .proof import Proof, Tree
 from .resume import continued, counted
 from .settings import LENGTH, Settings
+from .shared import Shared
 from .starts import MAX_PROOF_LEAVES, has_width, plan
-from .tree_search import OLD, TreeSearch
-from .workers import LOOK_SECONDS, Deadline, WorkerPool, check_options
+from .workers import Deadline, WorkerPool, check_options, count_workers
 
 LONG = 400                              # points: of a proved prism's orbit
 # Tries, after which it is asked whether thin prisms resist: with waves of one combination of the
 # angles most proofs are finished then.
 MANY_TRIES = 10000
+# Threads of this process work for this time, and so many times as long as the setting up took,
+# before the work is handed to an executor: each of its workers sets the search up anew.
+ALONE_SECONDS, ALONE_RATIO = 0.1, 10
 
 
 def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optional[str] = None,
@@ -54,11 +58,11 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
     xstar : tuple of two exact numbers, optional
         The angles of x*, in radians.  By default the program chooses them.
     jobs : int, optional
-        How many tasks at a time: by default one per core, or as many as keep the executor's workers
-        busy.  The result does not depend on it.
+        How many threads: by default one per core; or how many tasks the executor gets at a time: by
+        default as many as keep its workers busy.  The result does not depend on it.
     executor : concurrent.futures.Executor, optional
-        Its workers do the tasks, by default threads of this process.  The result does not depend on
-        it.
+        Its workers decide the prisms, by default threads of this process.  The result does not
+        depend on it.
     backup : path, optional
         A new file that is kept up to date, and is the proof file in the end.
     resume : Proof or path, optional
@@ -160,8 +164,9 @@ class _Run:
     added to the list."""
 
     def __init__(self, before, backup, jobs, executor, deadline, progress, on_leaf):
-        self.proof = replace(before, hopeless=False)
-        self.backup, self.jobs, self.executor = backup, jobs, executor
+        self.proof, self.backup = replace(before, hopeless=False), backup
+        self.threads = jobs if jobs and executor is None else count_workers()
+        self.pool = None if executor is None else WorkerPool(executor, jobs)
         self.progress, self.on_leaf = progress, on_leaf
         self.began, self.seconds_before = time.monotonic(), before.seconds
         self.deadline = deadline
@@ -175,22 +180,21 @@ class _Run:
 
     def run(self):
         try:
-            while self.number < len(self.proof.trees) and self._grow():
-                linked = (not self._tree.decided or self._is_hard()) and self._link()
-                if not linked and self._tree.decided:
-                    self.number += 1
-                elif not linked and ("U" in self._tree.text or self._is_vain()):
-                    self.proof = replace(self.proof, hopeless=self._is_hopeless())
-                    break
-                self.examined = self.share
+            with self.pool or contextlib.nullcontext():
+                while self.number < len(self.proof.trees) and self._grow():
+                    linked = (not self._tree.decided or self._is_hard()) and self._link()
+                    if not linked and self._tree.decided:
+                        self.number += 1
+                    elif not linked and ("U" in self._tree.text or self._is_vain()):
+                        self.proof = replace(self.proof, hopeless=self._is_hopeless())
+                        break
+                    self.examined = self.share
         except native.WrongTree:            # the file is left to whoever wants to mend it
             self.backup.leave()
             raise
-        except BaseException:               # what is known is saved, unless a change was half done
-            if self.search is not None:
-                self.search.settle()
+        except BaseException:               # what is known is saved
             if self.search is not None or self.proof.tree:
-                self._save_what_stands()
+                self._finished(self._snapshot())
             raise
         return self._finished(self._snapshot())
 
@@ -202,50 +206,70 @@ class _Run:
         problem, text = self._tree.problem, self._tree.text
         task = Task(problem, self.proof.settings, self._tree.xstar,
                     -native.ORDINARY if self.longest is None else self.longest)
-        with TreeSearch(task, self.jobs, self.executor, self.on_leaf is not None) as search:
-            counts = self.counts = self.proof.counts
-            if self.proof.parts:
-                counts = replace(counts, **dict(zip(tree.NODES, tree.count(text))))
-            begun = search.begin(text, self._tree.pending, counts, self._seconds_left)
-            if begun is None:               # no time even to set it up
-                return False
-            if self.number == 0:
-                self.proof = replace(self.proof.with_tree(0, xstar=begun.xstar),
-                                     constants=begun.constants, at_once=begun.at_once)
-            wrong = wrong_letter(problem, Fraction(begun.constants["B"]), begun.xstar, text,
-                                 self.proof.parts)
-            if wrong:
-                raise native.WrongTree("a leaf that is linked to part %s may lead out of its region"
-                                       % wrong)
-            self.search = search
-            self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
+        search, began = native.Search(task), time.monotonic()
+        if self._is_late() or not search.work(0, self._is_late):    # no time even to set it up
+            return False
+        counts = self.counts = self.proof.counts
+        if self.proof.parts:
+            counts = replace(counts, **dict(zip(tree.NODES, tree.count(text))))
+        search.resume(text, self._tree.pending)
+        if any(getattr(counts, name) != n for name, n in zip(tree.NODES, tree.count(text))):
+            raise native.WrongTree()
+        self.counts_before = counts
+        if self.number == 0:
+            self.proof = replace(self.proof.with_tree(0, xstar=search.xstar),
+                                 constants=search.constants, at_once=search.at_once)
+        wrong = wrong_letter(problem, Fraction(search.constants["B"]), search.xstar, text,
+                             self.proof.parts)
+        if wrong:
+            raise native.WrongTree("a leaf that is linked to part %s may lead out of its region"
+                                   % wrong)
+        self.search = search
+        self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
+        if self.pool:
+            self._hand_over(task, time.monotonic() - began)
+        if not self._look():
+            self.search.work(self.threads, self._look)
             self._look()
-            while not (search.finished or self._is_doubtful() or self._is_hard()
-                       or self._is_vain()) and self._seconds_left() > 0:
-                search.work(min(LOOK_SECONDS, max(0.0, self._seconds_left())))
-                self._look()
-            search.settle()
-            self._look()
-            ended = search.finished or self._is_hard() or self._is_vain()
-            doubtful = self._is_doubtful()
-            self.proof, self.search = self._snapshot(), None
+        ended, doubtful = self._is_ended(), self._is_doubtful()
+        self.proof, self.search = self._snapshot(), None
         if doubtful and not ended:
             return self._knows_longest() and self._grow()
         return ended
+
+    def _hand_over(self, task, setting_up):
+        """Hands the tree that is grown to the workers of the executor, if it is not soon finished.
+
+        setting_up: its duration in seconds."""
+        alone = time.monotonic() + ALONE_SECONDS + ALONE_RATIO * setting_up
+
+        def look():
+            return self._look() or time.monotonic() >= alone
+
+        if not look():
+            self.search.work(self.threads, look)
+        if not self._look():
+            self.search = Shared(replace(task, xstar=self.search.xstar), self.search, self.pool,
+                                 setting_up, self.on_leaf is not None)
+
+    def _is_late(self):
+        return self._seconds_left() <= 0
+
+    def _is_ended(self):
+        """Is the tree finished, so hard that other points are looked for, or is more work vain?"""
+        return self.view.finished or self._is_hard() or self._is_vain()
 
     def _knows_longest(self):
         """Finds out how long orbits may become, which the first tree tells for all; False if time
         is up first."""
         if self.longest is None:
             first = self.proof.trees[0]
-            with WorkerPool(None, 1, native.Stop()) as pool:
-                self.longest, = pool.results(
-                    self._seconds_left_told, [(longest, first.problem, first.xstar)])
+            self.longest = longest(first.problem, first.xstar, self.threads, self._is_late_told)
         return self.longest is not None
 
     def _is_doubtful(self):
         """Is it to be asked now how long orbits may become?"""
-        return self.search.long or (
+        return self.view.needs_long or (
             self.longest is None and self.may_be_long and self._counts.tries >= MANY_TRIES)
 
     def _resists(self):
@@ -266,7 +290,8 @@ class _Run:
     @property
     def _counts(self):
         """The statistics as they stand."""
-        return self.proof.counts if self.search is None else self.search.counts
+        return self.proof.counts if self.search is None else \
+            self.counts_before + self.view.settled
 
     @property
     def _tree(self):
@@ -290,7 +315,7 @@ class _Run:
     def _is_large(self):
         """Has a tree of a single value more prisms than those that show a starting point to be
         good?"""
-        proved = self._tree.text.count("P") if self.search is None else self.search.counts.proved
+        proved = self._tree.text.count("P") if self.search is None else self._counts.proved
         return proved > MAX_PROOF_LEAVES and not has_width(self._tree.problem)
 
     def _may_link(self):
@@ -311,15 +336,9 @@ class _Run:
         undecided = not self._is_long()
         self.tried.add(self.number)
 
-        def seconds_left():
-            workers.check()
-            return self._seconds_left_told()
-
-        with WorkerPool(self.executor) as workers, \
-                WorkerPool(None, self.jobs, native.Stop()) as pool:
-            found = plan(problem, self.proof.depth, self._tree.xstar, undecided,
-                         Fraction(self.proof.constants["B"]), len(self.proof.parts),
-                         self.longest, pool, seconds_left)
+        found = plan(problem, self.proof.depth, self._tree.xstar, undecided,
+                     Fraction(self.proof.constants["B"]), len(self.proof.parts),
+                     self.longest, self.threads, self._is_late_told)
         if found is None:
             return False
         proof = self.proof.with_tree(self.number, text=found.tree, pending=())
@@ -335,32 +354,36 @@ class _Run:
     def _seconds_left(self):
         return self.deadline.left()
 
-    def _seconds_left_told(self):
-        """This is asked for again and again while no tree grows."""
+    def _is_late_told(self):
+        """This is asked again and again while no tree grows."""
+        if self.pool:
+            self.pool.check()
         self._show(self.share, self.proof.counts)
-        return self._seconds_left()
+        return self._is_late()
 
     def _show(self, share, counts):
         if self.progress:
             self.progress(share, counts)
 
     def _look(self):
-        """Tells whoever wants to know how far things are."""
+        """Tells whoever wants to know how far things are.  Returns whether the work is to end."""
+        self.view = self.search.view(self.seen if self.on_leaf else None)
         if self.on_leaf:
-            text, steps = self.search.beginning(self.seen)
+            text = self.view.text.partition(tree.UNTRIED)[0]
             self.seen += len(text)
-            self._tell(text, steps)
+            self._tell(text, self.view.steps[:len(text)])
         if self.progress:
             left = len(self.proof.trees) - self.number
             self.share = max(self.share, self.examined
-                             + (1 - self.examined) * self.search.examined / left)
-            self._show(self.share, self.search.counts)
+                             + (1 - self.examined) * self.view.examined / left)
+            self._show(self.share, self.counts_before + self.view.counts)
         self.backup.update(self._snapshot)
+        return self._is_ended() or self._is_doubtful() or self._is_late()
 
     def _tell(self, text, steps):
         for node, points in zip(text if self.on_leaf else "", steps):
             for kind, cell in self.walk.feed(node):
-                if points != OLD:
+                if points != native.OLD:
                     leaf = tree.Leaf(kind, *self.prism(cell), sum(cell[1]))
                     self.on_leaf(leaf, points)
 
@@ -368,19 +391,15 @@ class _Run:
         """The proof as it stands."""
         proof = self.proof
         if self.search is not None:
-            text, pending = self.search.text()
-            proof = replace(proof.with_tree(self.number, text=text, pending=tuple(pending)),
-                            counts=self.search.counts)
+            view = self.search.view(0)
+            counts = dict(zip(tree.NODES, tree.count(view.text)))   # an undecided prism drops some
+            proof = replace(proof.with_tree(self.number, text=view.text.rstrip(tree.UNTRIED),
+                                            pending=tuple(view.hints)),
+                            counts=replace(self.counts_before + view.counts, **counts))
         if proof.parts:
             proof = replace(proof, counts=counted(proof))
         return replace(proof, seconds=self.seconds_before + time.monotonic() - self.began,
                        version=__version__, sha256="")
-
-    def _save_what_stands(self):
-        try:
-            self._finished(self._snapshot())
-        except AssertionError:          # an exception struck in the middle of a change
-            self.backup.leave()
 
     def _finished(self, proof):
         return replace(proof, sha256=self.backup.finish(proof))

@@ -50,14 +50,14 @@ class Plan:
     parts: List[Tree]
 
 
-def plan(problem, depth, xstar, undecided, largest, before, longest, pool, seconds_left):
-    """A Plan for a region over xstar; None: none was found, or seconds_left() fell to 0 before.
+def plan(problem, depth, xstar, undecided, largest, before, longest, threads, is_late):
+    """A Plan for a region over xstar; None: none was found, or is_late() was True before.
     Prisms without a better point become untried.
 
     undecided: whether the tree over x* alone is known to be undecided; before: the number of
     further parts so far; largest: B; longest: the most points of an orbit in a tree that is tried
-    to the end; pool: of this process."""
-    survey = partial(_surveys, pool, seconds_left)
+    to the end; threads: how many work on a tree."""
+    survey = partial(_surveys, threads, is_late)
     grown, found = _look(problem, depth, xstar, survey)
     if not found or before + len(found) > MAX_PARTS:
         return None
@@ -67,7 +67,7 @@ def plan(problem, depth, xstar, undecided, largest, before, longest, pool, secon
         image = _Image(problem, depth, xstar, largest, cells, longest, survey)
         best = _best_start(image, points)
         shifts = () if best is None else image.shifts(best)
-        if seconds_left() <= 0:
+        if is_late():
             return None
         if best is not None and (_text(best) != xstar or shifts):
             links = Links(problem, largest, xstar, _text(best))
@@ -127,10 +127,15 @@ def _whole(problem, xstar, cuts, survey, points):
     return grown[0] if grown and not grown[0].cells else None
 
 
-def _surveys(pool, seconds_left, tasks, leaves, points=inf):
+def _surveys(threads, is_late, tasks, leaves, points=inf):
     """The trees of the tasks, of `leaves` leaves or `points` points each; [] if time was up."""
-    found = pool.results(seconds_left, [(native.survey, task, leaves, points) for task in tasks])
-    return [] if None in found else found
+    found = []
+    for task in tasks:
+        grown = native.grow(task, leaves, points, threads, is_late)
+        if grown is None:
+            return []
+        found.append(grown)
+    return found
 
 
 class _Image:

@@ -1,11 +1,13 @@
-"""Tasks for threads of this process, or for the workers of somebody else's executor.
+"""Tasks for the workers of an executor: threads of this process, or somebody else's anywhere.
 
 concurrent.futures hands out calls.  This module adds what runs of hours need: a task whose worker
-dies is given to another, workers may join and leave (Dask), and no signal strikes in a lock."""
+dies is given to another, workers may join and leave (Dask), and no signal strikes in a lock.  A
+task is a column, a cell of a map, or a list of prisms that are to be decided."""
 
 import concurrent.futures
 import contextlib
 import os
+import threading
 import time
 import warnings
 from dataclasses import dataclass, replace
@@ -14,9 +16,9 @@ from typing import Any, Callable
 from ..storage.files import ConverseError
 from ..storage.signals import Resource, postponed
 from ..version import __version__
+from .native import LOOK_SECONDS
 from .settings import whole_number
 
-LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 ATTEMPTS = 4                        # at a task whose workers die
 ASK_SECONDS = 1.0                   # between two questions to a Dask scheduler
 # Evaluated by a Dask worker, on which the package may be missing.
@@ -67,7 +69,6 @@ class _Task:
     key: Any                            # of who gave it, to recognise the result
     call: Callable
     arguments: tuple
-    here: bool                          # in a thread of this process
     attempts: int = ATTEMPTS            # that are left, this one included
 
 
@@ -76,109 +77,82 @@ class WorkerPool(Resource):
 
     executor: a concurrent.futures.Executor or None; jobs: tasks at a time, or None: as many as keep
     the workers busy, which with a Dask cluster may come and go.
-    stop: its method set() is called to end the tasks in threads of this process.  Tasks in the
-    pool's own threads have it as their last argument; it cannot be sent to other processes."""
+    The tasks of threads of this process have as their last argument a function that tells whether
+    to stop; other processes cannot be told."""
 
-    def __init__(self, executor=None, jobs=None, stop=None):
-        self.executor, self.jobs, self.stop = executor, jobs, stop
+    def __init__(self, executor=None, jobs=None):
+        self.jobs, self.here = jobs, executor is None
+        self.executor = executor or concurrent.futures.ThreadPoolExecutor(jobs or count_workers())
         self.client = getattr(executor, "_client", None)        # of Dask
         self.due, self.cores, self.probes, self.waiting = 0.0, 0, {}, ""    # of _ask
-        self.running = {}                                       # future -> _Task
-        self.threads = concurrent.futures.ThreadPoolExecutor(
-            jobs or count_workers() if executor is None else 1)
+        self.running, self.stop = {}, threading.Event()         # running: future -> _Task
 
     def acquire(self):
         """The threads begin with the first task."""
 
     def release(self):
-        self.cancel()
-        self.threads.shutdown()
+        self.stop.set()
+        self._cancel()
+        if self.here:
+            self.executor.shutdown()
 
-    # ---- tasks
-
-    def give(self, key, call, *arguments, here=False):
-        """Hands out a task: call(*arguments) is to be computed, here: by this process.
-        WorkersGone: nobody takes it; MemoryError: memory is missing for another thread."""
-        self._submit(_Task(key, call, arguments, here or self.executor is None))
-
-    def take(self, seconds):
-        """Yields (key, result) of tasks that are done, as soon as one is; waits for `seconds` or
-        LOOK_SECONDS at most.  A task whose worker died is handed out again.  WorkersGone: they die
-        again and again; an exception of this program, missing memory, and whatever a thread of this
-        process raised is passed on."""
-        if not self.running:
-            time.sleep(min(seconds, LOOK_SECONDS))
-        for task, result, error in self._done(min(seconds, LOOK_SECONDS),
-                                              concurrent.futures.FIRST_COMPLETED):
-            if error is None:
-                yield task.key, result
-            else:
-                self._failed(error, task)
-                self._submit(replace(task, attempts=task.attempts - 1))
-
-    def results(self, seconds_left, calls):
-        """What these calls return, each (function, *arguments), which threads of this process make.
-        They are stopped when seconds_left(), asked for a few times a second, falls to 0."""
-        for key, call in enumerate(calls):
-            self.give(key, *call, here=True)
-        found = {}
-        while len(found) < len(calls):
-            seconds = seconds_left()
-            if seconds <= 0:
-                self.stop.set()
-            found.update(self.take(seconds if seconds > 0 else LOOK_SECONDS))
-        return [found[key] for key in range(len(calls))]
-
-    def settle(self, seconds):
-        """Ends the work: yields (key, result) of the tasks that are done within `seconds`, and
-        cancels the others."""
-        self._stop()
-        for task, result, error in self._done(seconds if self.alive else 0,
-                                              concurrent.futures.ALL_COMPLETED):
-            if error is None:
-                yield task.key, result
-        self.cancel()
-
-    def cancel(self):
-        """Gives up all tasks that are under way."""
-        self._stop()
+    def _cancel(self):
         with postponed():
             for future in self.running if self.alive else ():
                 future.cancel()
         self.running.clear()
 
-    def _stop(self):
-        if self.stop is not None:
-            self.stop.set()
+    # ---- tasks
+
+    def work(self, next_task, take, look):
+        """Hands out what next_task() returns, (key, call, *arguments) or None, and calls take(key,
+        result) for what comes back, until no task is left or look() returns True."""
+        task = next_task()
+        while task or self.running:
+            size = self.size
+            while task and size and len(self.running) <= size:  # one task waits for a worker
+                self._submit(_Task(task[0], task[1], task[2:]))
+                task = next_task()
+            for key, result in self._take():
+                take(key, result)
+            if look():
+                self._cancel()          # What comes of the tasks is of no use.
+                break
+            task = task or next_task()
 
     def _submit(self, task):
-        executor, arguments = self.executor, task.arguments
-        if task.here:
-            executor = self.threads
-            if self.stop is not None:
-                arguments += self.stop,
+        """WorkersGone: nobody takes the task; MemoryError: memory lacks for another thread."""
+        arguments = (*task.arguments, self.stop.is_set) if self.here else task.arguments
         try:
             with postponed():
-                self.running[executor.submit(task.call, *arguments)] = task
+                self.running[self.executor.submit(task.call, *arguments)] = task
         except Exception as error:
-            if not task.here:
+            if not self.here:
                 raise self._gone(error) from None
             if "new thread" in str(error):
                 raise MemoryError("there is not enough memory for another thread") from None
             raise
 
-    def _done(self, seconds, until):
-        """Yields (task, result, error) of the tasks that are done; an error or None."""
+    def _take(self):
+        """Yields (key, result) of tasks that are done, as soon as one is; waits for LOOK_SECONDS at
+        most.  A task whose worker died is handed out again.  WorkersGone: they die again and again;
+        an exception of this program, missing memory, and whatever a thread of this process raised
+        is passed on."""
+        if not self.running:
+            time.sleep(LOOK_SECONDS)
         with postponed():
-            done = concurrent.futures.wait(self.running, seconds, until)[0]
+            done = concurrent.futures.wait(self.running, LOOK_SECONDS,
+                                           concurrent.futures.FIRST_COMPLETED)[0]
         for future in done:
-            task, result, error = self.running.pop(future), None, None
+            task = self.running.pop(future)
             try:
                 with postponed():
                     result = future.result()
-            except Exception as failure:
-                error = failure
-            yield task, result, error
+            except Exception as error:
+                self._failed(error, task)
+                self._submit(replace(task, attempts=task.attempts - 1))
+            else:
+                yield task.key, result
 
     # ---- workers
 
@@ -197,7 +171,7 @@ class WorkerPool(Resource):
         """How many tasks to have under way; 0, with a RuntimeWarning, while a cluster lacks
         workers.  WorkersGone: there will be none."""
         if self.client is None:
-            return self.jobs or count_workers(self.executor)
+            return self.jobs or count_workers(None if self.here else self.executor)
         if time.monotonic() >= self.due:
             self._ask()
             self.due = time.monotonic() + ASK_SECONDS
@@ -210,7 +184,7 @@ class WorkerPool(Resource):
 
     def _failed(self, error, task):
         """Raises what a failure of a task means; returns if the task may be tried again."""
-        if task.here or isinstance(error, (ConverseError, MemoryError)):
+        if self.here or isinstance(error, (ConverseError, MemoryError)):
             raise error
         self.check()
         if task.attempts > 1:
@@ -292,17 +266,12 @@ class Filling(Resource):
         self.result.seconds = time.monotonic() - self.began
 
     def work(self, next_task, take):
-        """Hands out what next_task() returns, (key, call, *arguments), and calls take(key, result)
-        for what comes back, until no task or no time is left."""
-        task, pool = next_task(), self.pool
-        while (task or pool.running) and not self.late:
-            size = pool.size
-            while task and size and len(pool.running) <= size:  # one task waits for a worker
-                pool.give(*task)
-                task = next_task()
-            for key, result in pool.take(LOOK_SECONDS):
-                take(key, result)
+        """As WorkerPool.work does, until no time is left."""
+        def look():
             self._count()
             self.backup.update(lambda: self.result)
             self.look()
-            task = task or next_task()
+            return self.late
+
+        if not self.late:
+            self.pool.work(next_task, take, look)

@@ -13,7 +13,7 @@
 
 typedef struct {
     jmp_buf start;
-    const cv_stop *stop;
+    const stop_request *stop;
 } guard;
 
 /* Made with the thread and not at first use, which could itself run out of memory. */
@@ -45,18 +45,9 @@ static void *reallocate(void *p, size_t old, size_t n)
     return checked(realloc(p, n));
 }
 
-cv_stop *cv_stop_new(void) { return calloc(1, sizeof(cv_stop)); }
-void cv_stop_free(cv_stop *stop) { free(stop); }
-void cv_stop_set(cv_stop *stop) { atomic_store_explicit(&stop->asked, 1, memory_order_relaxed); }
-
-int cv_stop_get(const cv_stop *stop)
-{
-    return stop != NULL && atomic_load_explicit(&stop->asked, memory_order_relaxed);
-}
-
 /* C11 (7.13.1.1) allows setjmp only as the whole of a condition or compared with a constant, and
    keeps only local variables that are volatile or have not changed since. */
-int guard_run(void (*work)(void *), void *data, const cv_stop *stop)
+int guard_run(void (*work)(void *), void *data, const stop_request *stop)
 {
     guard *const before = armed;
     guard mine = { .stop = stop };
@@ -81,6 +72,6 @@ int guard_run(void (*work)(void *), void *data, const cv_stop *stop)
 
 void guard_poll(void)
 {
-    if (armed != NULL && cv_stop_get(armed->stop))
+    if (armed != NULL && is_to_stop(armed->stop))
         longjmp(armed->start, GUARD_STOP);
 }

@@ -17,6 +17,8 @@ enum { MAX_POINTS = 1 << 17 };
 /* For a problem whose angles are also in radians, and whose x* is chosen.  longest: the most
    points of an orbit, at most MAX_POINTS.  NULL: no memory. */
 loewner *loewner_new(const patch *problem, int longest);
+/* The same problem, with room of its own to try prisms in.  NULL: no memory. */
+loewner *loewner_copy(const loewner *w);
 void loewner_free(loewner *w);
 
 /* Bounds B over the torus, for all parameters.  Before this call B is infinite, and no prism can

@@ -85,6 +85,14 @@ static int loewner_prepare(void **work, const patch *p, const precision *how,
     return CV_OK;
 }
 
+static int loewner_copied(void **copy, const void *work, const patch *p, const precision *how)
+{
+    (void)p;
+    (void)how;
+    *copy = loewner_copy(work);
+    return *copy == NULL ? CV_ENOMEM : CV_OK;
+}
+
 /* The work holds doubles and no number of GMP's. */
 static void free_loewner(void *work, int numbers_lost)
 {
@@ -108,6 +116,7 @@ const method method_loewner = {
     .start_places = 6,
     .least_digits = 35,
     .prepare = loewner_prepare,
+    .copy = loewner_copied,
     .free = free_loewner,
     .axes = loewner_axes,
     .lanes = loewner_lanes,

@@ -471,6 +471,18 @@ static void set_turns(loewner *w, const patch *problem, const apm_t scale)
     apm_clear(longer);
 }
 
+/* Gives the problem room to try prisms in; NULL: no memory, and the problem is freed. */
+static loewner *with_room(loewner *w)
+{
+    w->memory = calloc(1, w->engine->size + ALIGNMENT);
+    if (w->memory == NULL) {
+        free(w);
+        return NULL;
+    }
+    w->work = w->memory + (ALIGNMENT - (uintptr_t)w->memory % ALIGNMENT);
+    return w;
+}
+
 loewner *loewner_new(const patch *problem, int longest)
 {
     loewner *w = calloc(1, sizeof *w);
@@ -492,13 +504,17 @@ loewner *loewner_new(const patch *problem, int longest)
     for (int corner = 0; corner < 1 << w->n_parameters; corner++)
         w->corner[corner] = HUGE_VAL;
     w->engine = fastest_engine();
-    w->memory = calloc(1, w->engine->size + ALIGNMENT);
-    if (w->memory == NULL) {
-        free(w);
+    return with_room(w);
+}
+
+loewner *loewner_copy(const loewner *w)
+{
+    loewner *const copy = malloc(sizeof *copy);
+
+    if (copy == NULL)
         return NULL;
-    }
-    w->work = w->memory + (ALIGNMENT - (uintptr_t)w->memory % ALIGNMENT);
-    return w;
+    *copy = *w;
+    return with_room(copy);
 }
 
 void loewner_free(loewner *w)

@@ -46,6 +46,9 @@ typedef struct {
        method has, and at_once (cv_at_once).  CV_OK or an error. */
     int (*prepare)(void **work, const patch *p, const precision *how,
                    apm_t constants[CV_N_CONSTANTS], int *at_once);
+    /* A workspace for one thread more, from that of prepare, which other threads may be using.
+       *copy receives it, even on failure if something must be freed.  CV_OK or an error. */
+    int (*copy)(void **copy, const void *work, const patch *p, const precision *how);
     /* Frees work, which may be NULL.  If numbers_lost, GMP's numbers in it may be broken (guard.c):
        these are abandoned, and all other memory is freed. */
     void (*free)(void *work, int numbers_lost);

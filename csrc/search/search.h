@@ -1,47 +1,55 @@
-/* search.h - a search, as its files see it: setup.c makes all ready, tree.c grows the tree, and
-   lookahead.c tries prisms, some of them before their turn. */
+/* search.h - a search, as its files see it: setup.c makes all ready, tree.c holds the tree, and
+   threads.c lets threads try its prisms. */
 #ifndef CONVERSE_SEARCH_H
 #define CONVERSE_SEARCH_H
 
+#include <pthread.h>
 #include <stddef.h>
 
+#include "arith/guard.h"
 #include "search/method.h"
 
 enum { INDEX_BITS = 61 };               /* cuts along one axis that a cell's index can hold */
 
-/* A prism that was looked at, perhaps before its turn in preorder comes. */
+/* A prism that the tree's beginning does not hold yet, or one that is free. */
 typedef struct {
     cv_cell cell;
     outcome outcome;
-    int known, skipped;                 /* was it tried, or need not be? */
-    int settled;                        /* is all that it was cut into known, too? */
-    int halves[2];                      /* of notes, lower and upper; -1: none */
-} note;
+    char kind;                          /* what became of it as in the text, or '?' */
+    char busy;                          /* Does a thread try it? */
+    int next;                           /* the next one in preorder, or the next free one */
+    size_t old, old_end; /* nodes of the tree taken up that follow what it becomes */
+} prism;
 
-/* A prism that is to be decided, and its note, or -1. */
-typedef struct {
-    cv_cell cell;
-    int note;
-} untested;
+typedef struct worker worker; /* threads.c */
 
+/* The nodes of the tree up to the first one that is not known are its beginning: they stand in
+   tree and steps, and only they count.  All prisms after it are in the list that begins with
+   prisms[0].next; prisms[0] is its head, and stands for none. */
 struct cv_search {
     const method *method;
-    void *work;                         /* the method's */
+    void *work; /* the method's, of the first thread */
     precision precision;
     patch problem;
-    untested *stack;
-    int pending, allocated;             /* prisms on the stack; room for */
-    note *notes;                        /* those in use and those that are free, in a list */
-    int n_notes, allocated_notes, free_note;
-    char *tree;
-    int *steps;                         /* of the orbit of each leaf */
-    size_t length, capacity;
-    cv_counts counts, before;           /* before: as it was when the node at hand was begun */
-    double points;                      /* of all orbits that were followed since cv_restart */
+    prism *prisms;
+    int n_prisms, allocated, free_prism;
+    char *tree, *old; /* old: the text that was taken up */
+    int *steps; /* of the orbit of each node; OLD: of an old one */
+    size_t length, capacity, old_length;
+    cv_counts counts;
+    double points, examined; /* of all orbits that were followed; share of the volume */
+    double most_points;
+    long enough; /* leaves */
     apm_t constants[CV_N_CONSTANTS];
-    int depth, stubborn, symmetric, at_once, last_steps, status;
-    enum { READ, PREPARED, SPOILT } stage;      /* SPOILT: cv_prepare was broken off */
-    int numbers_lost;                   /* memory ran out inside GMP: guard.c */
+    int depth, stubborn, symmetric, at_once, status, needs_long;
+    enum { READ, PREPARED, SPOILT } stage; /* SPOILT: the setting up was broken off */
+    int numbers_lost; /* memory ran out inside GMP: guard.c */
+    worker *workers;
+    int wanted, active, idle; /* threads that there are to be, that run, that wait */
+    double began; /* when the first of them did */
+    stop_request stop; /* the threads are to end */
+    pthread_mutex_t lock; /* of all that changes above, while threads are active */
+    pthread_cond_t changed, ended; /* there may be prisms to try; no thread is active */
 };
 
 static inline int all_cuts(const cv_cell *c)
@@ -49,26 +57,26 @@ static inline int all_cuts(const cv_cell *c)
     return c->cuts[0] + c->cuts[1] + c->cuts[2] + c->cuts[3] + c->cuts[4];
 }
 
-/* The cell becomes the upper of its halves across axis. */
-static inline void split_cell(cv_cell *upper, int axis, cv_cell *lower)
+static inline long decided_leaves(const cv_search *s)
 {
-    upper->cuts[axis]++;
-    upper->index[axis] *= 2;
-    *lower = *upper;
-    upper->index[axis]++;
+    return s->counts.proved + s->counts.symmetric + s->counts.undecided;
 }
 
-/* tree.c: may the cell be cut again across axis; may it be skipped, since its mirror image will do?
- */
-int may_halve(const cv_search *s, const cv_cell *c, int axis);
-int may_skip(const cv_search *s, const cv_cell *c);
+/* tree.c: room for n prisms more, or CV_ENOMEM; */
+int room_for_prisms(cv_search *s, int n);
+/* the first prisms to try, at most so many: their number, and which; their cells are copied; */
+int take_prisms(cv_search *s, int most, int ids[], cv_cell cells[]);
+/* records what became of a prism; there is room for two more; */
+void put_outcome(cv_search *s, int id, const outcome *out);
+/* appends to the tree's beginning what is known, up to the limits, and sets s->status and s->stop
+   if the search has ended. */
+void append_known(cv_search *s);
 
-/* lookahead.c: room for the notes of a step, or CV_ENOMEM; what is known of the cell on top of the
-   stack, which is tried if need be, or NULL if memory is short; and when it had its turn
-   the note is no longer needed. */
-int make_room_for_notes(cv_search *s);
-const note *note_on_top(cv_search *s);
-void forget_note(cv_search *s, const note *n);
-void forget_all_notes(cv_search *s);
+/* threads.c: makes the lock and its conditions; ends the threads and frees what they have. */
+int make_lock(cv_search *s);
+void free_workers(cv_search *s);
+
+/* setup.c: sets up what every thread needs, once.  CV_OK or an error. */
+int set_up(cv_search *s);
 
 #endif

@@ -14,15 +14,19 @@ void cv_search_free(cv_search *s)
 {
     if (s == NULL)
         return;
+    free_workers(s);
     s->method->free(s->work, s->numbers_lost);
     if (!s->numbers_lost) {
         patch_clear(&s->problem);
         for (int j = 0; j < CV_N_CONSTANTS; j++)
             apm_clear(s->constants[j]);
     }
-    free(s->stack);
-    free(s->notes);
+    pthread_mutex_destroy(&s->lock);
+    pthread_cond_destroy(&s->changed);
+    pthread_cond_destroy(&s->ended);
+    free(s->prisms);
     free(s->tree);
+    free(s->old);
     free(s->steps);
     free(s);
 }
@@ -83,9 +87,8 @@ static void set_up_problem(void *data)
         g->status = set_start(s, g->xstar);
 }
 
-static void set_up_method(void *data)
+int set_up(cv_search *s)
 {
-    cv_search *const s = data;
     const long given = s->precision.digits, least = s->method->least_digits;
     const long dp = given < least ? least : given;
     const long pi_dp = s->precision.as_printed ? dp : dp > PI_SHORT ? dp - PI_SHORT : 1;
@@ -95,33 +98,7 @@ static void set_up_method(void *data)
     apm_pi(pi, pi_dp);
     region_to_radians(&s->problem, pi, pi_dp);
     apm_clear(pi);
-    s->status = s->method->prepare(&s->work, &s->problem, &s->precision, s->constants, &s->at_once);
-}
-
-int cv_prepare(cv_search *s, const cv_stop *stop)
-{
-    if (s->stage == PREPARED)
-        return CV_OK;
-    if (s->stage == SPOILT || s->status != CV_RUNNING)
-        return s->status < CV_OK ? s->status : CV_EARGUMENT;
-    if (!machine_is_sound())
-        return CV_EMACHINE;
-    s->stage = SPOILT;                  /* until it is done */
-    switch (guard_run(set_up_method, s, stop)) {
-    case GUARD_STOP: s->status = CV_EARGUMENT; return CV_RUNNING;
-    case GUARD_MEMORY:
-        s->numbers_lost = 1;
-        s->status = CV_ENOMEM;
-        break;
-    default:
-        if (s->status == CV_OK && !machine_is_sound())
-            s->status = CV_EMACHINE;
-    }
-    if (s->status != CV_OK)
-        return s->status;
-    s->stage = PREPARED;
-    s->status = CV_RUNNING;
-    return CV_OK;
+    return s->method->prepare(&s->work, &s->problem, &s->precision, s->constants, &s->at_once);
 }
 
 int cv_search_new(cv_search **result, const cv_problem *problem, const char *const xstar[2],
@@ -138,6 +115,7 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
     s = calloc(1, sizeof *s);
     if (s == NULL)
         return CV_ENOMEM;
+    status = make_lock(s);
     patch_init(&s->problem);
     for (int j = 0; j < CV_N_CONSTANTS; j++)
         apm_init(s->constants[j]);
@@ -146,10 +124,12 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
     s->depth = depth;
     s->stubborn = stubborn;
     g.s = s;
-    s->numbers_lost = guard_run(set_up_problem, &g, NULL) == GUARD_MEMORY;
-    status = s->numbers_lost ? CV_ENOMEM : g.status;
+    if (status == CV_OK) {
+        s->numbers_lost = guard_run(set_up_problem, &g, NULL) == GUARD_MEMORY;
+        status = s->numbers_lost ? CV_ENOMEM : g.status;
+    }
     if (status == CV_OK)
-        status = cv_resume(s, "", 0);   /* the whole root is to be tried */
+        status = cv_resume(s, "", 0, NULL, 0);  /* the whole root is to be tried */
     if (status == CV_OK) {
         *result = s;
     } else {

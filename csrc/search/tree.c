@@ -1,41 +1,148 @@
-/* tree.c - the list of untested prisms and the main loop (thesis, Appendix C, main).
+/* tree.c - the tree of prisms (thesis, Appendix C, main).
 
-   The list is a stack: a prism that fails is replaced by its two halves, the first of which is
-   tried next.  So the tree of all prisms is met in preorder, and one character per node,
-   written as it is decided, is the whole of the proof.  The outcome of a prism depends on itself
-   and on what its parent learnt (cv_cell's hint), so parts of the tree can be grown apart. */
-#define _POSIX_C_SOURCE 200809L
-
+   A prism that fails is replaced by its two halves, the first of which comes next.  So the tree
+   of all prisms is met in preorder, and one character per node is the whole of the proof.  The
+   outcome of a prism depends on itself and on what its parent learnt (cv_cell's hint), and on no
+   other prism.  So threads may try the first prisms of those that are pending in any order and
+   company (threads.c).  A prism counts only when all before it are known: limits, statistics and
+   the end at an undecided prism are those of a search that tries one prism after the other. */
+#include <ctype.h>
+#include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
-#include "arith/guard.h"
-#include "arith/machine.h"
 #include "search/search.h"
+
+enum { MOST_PENDING = AXES * INDEX_BITS + 1 };  /* A cut adds one, and a cell has fewer cuts. */
+enum { OLD = -1 };                      /* the steps of a node of a tree that was taken up */
 
 static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
 
-static int room_on_stack(cv_search *s, int allocated)
+static int is_cut(char kind) { return kind >= '0' && kind < '0' + AXES; }
+
+static int may_halve(const cv_search *s, const cv_cell *c, int axis)
 {
-    untested *const stack = realloc(s->stack, (size_t)allocated * sizeof *stack);
-    if (stack == NULL)
-        return CV_ENOMEM;
-    s->stack = stack;
-    s->allocated = allocated;
+    return all_cuts(c) < s->depth && c->cuts[axis] < INDEX_BITS;
+}
+
+/* The cell becomes the upper of its halves across axis. */
+static void split_cell(cv_cell *upper, int axis, cv_cell *lower)
+{
+    upper->cuts[axis]++;
+    upper->index[axis] *= 2;
+    *lower = *upper;
+    upper->index[axis]++;
+}
+
+/* May the cell be skipped, since its mirror image will do?  Exchanging v0 and v1 exchanges a and b,
+   and leaves x* alone if it lies on the diagonal.  If all the data of the problem are symmetric so
+   is the set of minimizing states: of two mirror images one will do, and the prisms wholly on the
+   side v1 >= v0 are skipped.  Their mirror images are covered by the prisms that are not.  Thesis:
+   consultTree, section 3.4.4. */
+static int may_skip(const cv_search *s, const cv_cell *c)
+{
+    const int k = c->cuts[V0], l = c->cuts[V1];
+
+    if (!s->symmetric)
+        return 0;                       /* else: is index1 / 2^l >= (index0 + 1) / 2^k ? */
+    return k > l ? c->index[V1] << (k - l) > c->index[V0]
+                 : c->index[V1] >= (c->index[V0] + 1) << (l - k);
+}
+
+/* ---- the list of prisms */
+
+int room_for_prisms(cv_search *s, int n)
+{
+    if (s->n_prisms + n > s->allocated) {
+        const int allocated = 2 * s->allocated + n + 64;
+        prism *const prisms = realloc(s->prisms, (size_t)allocated * sizeof *prisms);
+        if (prisms == NULL)
+            return CV_ENOMEM;
+        s->prisms = prisms;
+        s->allocated = allocated;
+    }
     return CV_OK;
 }
 
-static void push(cv_search *s, const cv_cell *cell)
+/* Forgets all prisms but the head of the list, for which there is room. */
+static void forget_prisms(cv_search *s)
 {
-    s->stack[s->pending++] = (untested){ *cell, -1 };
+    s->prisms[0] = (prism){ .kind = '-' };
+    s->n_prisms = 1;
+    s->free_prism = 0;
 }
 
-/* Makes room for one more node and its halves in advance, so that a node is never half decided. */
-static int make_room(cv_search *s)
+/* Puts a prism that is to be tried into the list, after another one. */
+static int put_after(cv_search *s, int id, const cv_cell *cell)
 {
-    if (s->length == s->capacity) {
-        const size_t capacity = 2 * s->capacity + 4096;
+    const int added = s->free_prism > 0 ? s->free_prism : s->n_prisms++;
+    prism *const p = s->prisms;
+
+    if (added == s->free_prism)
+        s->free_prism = p[added].next;
+    p[added] = (prism){ .cell = *cell, .kind = '?', .next = p[id].next };
+    p[id].next = added;
+    return added;
+}
+
+int take_prisms(cv_search *s, int most, int ids[], cv_cell cells[])
+{
+    int n = 0;
+
+    for (int id = s->prisms[0].next; id > 0 && n < most; id = s->prisms[id].next) {
+        prism *const p = &s->prisms[id];
+        if (p->busy || p->kind != '?')
+            continue;
+        if (may_skip(s, &p->cell)) {
+            p->kind = 'S';
+        } else {
+            p->busy = 1;
+            cells[n] = p->cell;
+            ids[n++] = id;
+        }
+    }
+    return n;
+}
+
+/* Thesis: refinePrism. */
+void put_outcome(cv_search *s, int id, const outcome *out)
+{
+    prism *const p = &s->prisms[id];
+    const int axis = out->axis;
+    cv_cell upper = p->cell, lower;
+
+    p->outcome = *out;
+    p->busy = 0;
+    p->kind = out->v.no_tori ? 'P' : 'U';
+    if (out->v.no_tori || axis < 0 || !may_halve(s, &p->cell, axis))
+        return;
+    p->kind = (char)('0' + axis);
+    upper.hint = out->hint;
+    split_cell(&upper, axis, &lower);
+    prism *const last = &s->prisms[put_after(s, id, &upper)];
+    last->old = p->old;
+    last->old_end = p->old_end;
+    p->old_end = p->old;
+    put_after(s, id, &lower);
+}
+
+/* The last one of all that a prism in the list has become so far. */
+static int last_below(const cv_search *s, int id)
+{
+    for (int open = 1;; id = s->prisms[id].next) {
+        open += is_cut(s->prisms[id].kind) ? 1 : -1;
+        if (open == 0)
+            return id;
+    }
+}
+
+/* ---- the tree's beginning */
+
+static int room_for_nodes(cv_search *s, size_t n)
+{
+    if (s->length + n > s->capacity) {
+        const size_t capacity = 2 * s->capacity + n + 4096;
         char *tree = realloc(s->tree, capacity);
         if (tree == NULL)
             return CV_ENOMEM;
@@ -46,80 +153,50 @@ static int make_room(cv_search *s)
         s->steps = steps;
         s->capacity = capacity;
     }
-    if (s->pending + 1 >= s->allocated && room_on_stack(s, 2 * s->allocated + 64) != CV_OK)
-        return CV_ENOMEM;
-    return make_room_for_notes(s);
+    return CV_OK;
 }
 
-/* Counts a leaf below that number of cuts. */
-static void count_leaf(cv_search *s, char kind, int cuts)
+/* Adds a node below that number of cuts to the statistics. */
+static void count_node(cv_counts *counts, char kind, int cuts)
 {
-    if (kind == 'P') {
-        s->counts.proved++;
-        if (cuts > s->counts.most_cuts)
-            s->counts.most_cuts = cuts;
-    } else if (kind == 'S') {
-        s->counts.symmetric++;
-    } else {
-        s->counts.undecided++;
-    }
+    counts->cuts += is_cut(kind);
+    counts->proved += kind == 'P';
+    counts->symmetric += kind == 'S';
+    counts->undecided += kind == 'U';
+    if (kind == 'P' && cuts > counts->most_cuts)
+        counts->most_cuts = cuts;
 }
 
-static void leaf(cv_search *s, char kind)
+static void append(cv_search *s, char kind, int steps)
 {
     s->tree[s->length] = kind;
-    s->steps[s->length++] = s->last_steps;
-    count_leaf(s, kind, all_cuts(&s->stack[--s->pending].cell));
-    if (s->pending == 0 || (kind == 'U' && !s->stubborn))
-        s->status = CV_OK;              /* the search has ended: nothing is left, or no theorem */
+    s->steps[s->length++] = steps;
 }
 
-int may_halve(const cv_search *s, const cv_cell *c, int axis)
+/* Does the search end at this node?  What is known beyond it does not count. */
+static int ends_at(cv_search *s, char kind)
 {
-    return all_cuts(c) < s->depth && c->cuts[axis] < INDEX_BITS;
+    if (kind != 'U' || s->stubborn)
+        return 0;
+    forget_prisms(s);
+    s->status = CV_OK;
+    return 1;
 }
 
-/* Cuts the cell on top of the stack in half, the lower half to come first. */
-static void halve(cv_search *s, int axis)
+/* Appends nodes of the tree that was taken up; there is room. */
+static void append_old(cv_search *s, size_t begin, size_t end)
 {
-    untested *const upper = &s->stack[s->pending - 1];
-    cv_cell lower;
-
-    s->counts.cuts++;
-    split_cell(&upper->cell, axis, &lower);
-    push(s, &lower);
-}
-
-/* The cell is cut across axis, or given up if it has been cut too often or, axis < 0, if that would
-   not help.  Thesis: refinePrism. */
-static void cut(cv_search *s, int axis)
-{
-    if (axis < 0 || !may_halve(s, &s->stack[s->pending - 1].cell, axis)) {
-        leaf(s, 'U');
-        return;
+    for (size_t j = begin; j < end; j++) {
+        append(s, s->old[j], OLD);
+        if (ends_at(s, s->old[j]))
+            break;
     }
-    halve(s, axis);
-    s->steps[s->length] = 0;
-    s->tree[s->length++] = (char)('0' + axis);
 }
 
-/* Exchanging v0 and v1 exchanges a and b, and leaves x* alone if it lies on the diagonal.  If
-   all the data of the problem are symmetric so is the set of minimizing states: of two mirror
-   images one will do, and the prisms wholly on the side v1 >= v0 are skipped.  Their mirror
-   images are covered by the prisms that are not.  Thesis: consultTree, section 3.4.4. */
-int may_skip(const cv_search *s, const cv_cell *c)
+/* Adds a try to the statistics. */
+static void count_try(cv_search *s, const prism *p)
 {
-    const int k = c->cuts[V0], l = c->cuts[V1];
-
-    if (!s->symmetric)
-        return 0;                       /* else: is index1 / 2^l >= (index0 + 1) / 2^k ? */
-    return k > l ? c->index[V1] << (k - l) > c->index[V0]
-                 : c->index[V1] >= (c->index[V0] + 1) << (l - k);
-}
-
-/* Adds a try to the statistics; ends or cuts the prism on top of the stack, the tried one. */
-static void conclude(cv_search *s, const outcome *out)
-{
+    const outcome *const out = &p->outcome;
     const verdict *const v = &out->v;
     cv_counts *const counts = &s->counts;
 
@@ -130,12 +207,9 @@ static void conclude(cv_search *s, const outcome *out)
         counts->ll_used[j] += out->ll_used[j];
     if (out->steps > counts->max_steps)
         counts->max_steps = out->steps;
-    s->stack[s->pending - 1].cell.hint = out->hint;
-    s->last_steps = v->nsteps;
     s->points += v->nsteps;
-    if (!v->no_tori) {
+    if (p->kind != 'P') {
         counts->reasons[v->reason]++;
-        cut(s, out->axis);
         return;
     }
     if (out->Rtries && v->by_trace)
@@ -144,178 +218,228 @@ static void conclude(cv_search *s, const outcome *out)
         counts->LLSuccess++;
     if (v->nsteps > counts->max_NTsteps)
         counts->max_NTsteps = v->nsteps;
-    leaf(s, 'P');
 }
 
-/* One prism of the list: skip it, prove it, cut it or give it up.  Thesis: main.  CV_OK or
-   CV_ENOMEM. */
-static int decide(cv_search *s)
+/* Appends the first prism of the list, which is known; there is room. */
+static void append_first(cv_search *s)
 {
-    const int top = s->pending - 1;
-    const note *const n = note_on_top(s);
+    const int id = s->prisms[0].next;
+    const prism p = s->prisms[id];
+    const int cuts = all_cuts(&p.cell);
 
-    if (n == NULL)
-        return CV_ENOMEM;
-    if (n->outcome.cut_off && s->precision.longest < 0) {
-        s->status = CV_LONG;
-        return CV_OK;
-    }
-    s->last_steps = 0;
-    if (n->skipped)
-        leaf(s, 'S');
-    else
-        conclude(s, &n->outcome);
-    if (s->pending > top + 1) {
-        s->stack[top + 1].note = n->halves[0];
-        s->stack[top].note = n->halves[1];
-    }
-    forget_note(s, n);
-    return CV_OK;
+    if (p.kind != 'S')
+        count_try(s, &p);
+    count_node(&s->counts, p.kind, cuts);
+    append(s, p.kind, p.kind == 'S' || is_cut(p.kind) ? 0 : p.outcome.v.nsteps);
+    if (!is_cut(p.kind))
+        s->examined += ldexp(1.0, -cuts);
+    s->prisms[0].next = p.next;
+    s->prisms[id].next = s->free_prism;
+    s->free_prism = id;
+    if (!ends_at(s, p.kind))
+        append_old(s, p.old, p.old_end);
 }
 
-static double now(void)
+static int is_enough(const cv_search *s)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    return decided_leaves(s) >= s->enough || s->points >= s->most_points;
 }
 
-static long decided_leaves(const cv_search *s)
+void append_known(cv_search *s)
 {
-    return s->counts.proved + s->counts.symmetric + s->counts.undecided;
-}
-
-/* How much of a search to do. */
-typedef struct {
-    cv_search *s;
-    long enough;                        /* leaves */
-    double points, end;
-    const cv_stop *stop;
-} step;
-
-static void take_step(void *data)
-{
-    const step *const how = data;
-    cv_search *const s = how->s;
-
-    while (s->status == CV_RUNNING && s->pending > 0 && decided_leaves(s) < how->enough &&
-           s->points < how->points) {
-        s->before = s->counts;
-        if (make_room(s) != CV_OK || decide(s) != CV_OK) {
+    while (s->status == CV_RUNNING && !is_enough(s)) {
+        const prism *const first = &s->prisms[s->prisms[0].next];
+        if (first->kind == '?')
+            return;
+        s->needs_long = first->outcome.cut_off && s->precision.longest < 0;
+        if (s->needs_long)
+            break;
+        if (first->kind == '-')
+            s->status = CV_OK;          /* nothing is left */
+        else if (room_for_nodes(s, 1 + first->old_end - first->old) != CV_OK)
             s->status = CV_ENOMEM;
-            break;
-        }
-        if (now() >= how->end || cv_stop_get(how->stop))
-            break;
+        else
+            append_first(s);
     }
+    ask_to_stop(&s->stop, 1);
 }
 
-int cv_step(cv_search *s, long max_leaves, double max_points, double max_seconds,
-            const cv_stop *stop)
-{
-    step how = { s, decided_leaves(s) + max_leaves, s->points + max_points, now() + max_seconds,
-                 stop };
-    int ended = GUARD_DONE;
+/* ---- what Python gives and gets */
 
-    if (s->status == CV_RUNNING && (s->stage != PREPARED || !machine_is_sound()))
-        s->status = s->stage == PREPARED ? CV_EMACHINE : CV_EARGUMENT;
-    s->before = s->counts;
-    ended = guard_run(take_step, &how, stop);
-    if (ended != GUARD_DONE)            /* the node at hand is forgotten, the rest stands */
-        s->counts = s->before;
-    if (ended == GUARD_MEMORY) {
-        s->numbers_lost = 1;
-        s->status = CV_ENOMEM;
-    }
-    if (s->status >= CV_OK && !machine_is_sound())
-        s->status = CV_EMACHINE;        /* who knows since when: see converse.h */
-    return s->status;
-}
-
-int cv_restart(cv_search *s, int n, const cv_cell *cells)
+/* Forgets tree and counts, for n prisms that will be put into the list. */
+static int forget_tree(cv_search *s, int n)
 {
+    cv_halt(s);
     if (s->numbers_lost)
         return CV_ENOMEM;
     if (s->stage == SPOILT)
         return CV_EARGUMENT;
-    if (n + 1 > s->allocated && room_on_stack(s, n + 1) != CV_OK)
+    s->n_prisms = 0;
+    if (room_for_prisms(s, n + 1) != CV_OK)
         return CV_ENOMEM;
-    s->pending = 0;
-    while (s->pending < n)
-        push(s, &cells[n - 1 - s->pending]);
-    forget_all_notes(s);
-    s->length = 0;
-    s->points = 0;
+    forget_prisms(s);
+    s->length = s->old_length = 0;
+    s->needs_long = 0;
+    s->points = s->examined = 0.0;
     memset(&s->counts, 0, sizeof s->counts);
-    s->status = n > 0 ? CV_RUNNING : CV_OK;
+    s->status = CV_RUNNING;
     return CV_OK;
 }
 
-/* Counts the nodes of a tree that was grown before.  Puts its untried prisms, n of them, into an
-   array with room for all of them. */
-static int take_up(cv_search *s, const char *tree, size_t length, cv_cell untried[], int *n)
+int cv_restart(cv_search *s, int n, const cv_cell *cells)
 {
-    const int axes = s->method->axes(&s->problem);
+    const int status = forget_tree(s, n);
 
-    for (size_t j = 0; j < length; j++) {
-        const int axis = tree[j] - '0';
-        if (s->pending == 0 || make_room(s) != CV_OK)
-            return s->pending == 0 ? CV_EARGUMENT : CV_ENOMEM;
-        const cv_cell *const c = &s->stack[s->pending - 1].cell;
-        if (axis >= 0 && axis < axes && may_halve(s, c, axis)) {
-            halve(s, axis);
-            continue;
-        }
-        s->pending--;
-        if (tree[j] == '?') {
-            untried[(*n)++] = *c;
-        } else if (tree[j] == 'P' || tree[j] == 'U' || (tree[j] == 'S' && may_skip(s, c))) {
-            count_leaf(s, tree[j], all_cuts(c));
-        } else {
-            return CV_EARGUMENT;
-        }
-    }
-    return CV_OK;
-}
-
-int cv_resume(cv_search *s, const char *tree, size_t length)
-{
-    size_t most = 1;
-    int n = 0;
-
-    for (size_t j = 0; j < length; j++)
-        most += tree[j] == '?';
-    cv_cell *const untried = malloc(most * sizeof *untried);
-    int status = untried == NULL ? CV_ENOMEM : cv_restart(s, 1, &whole);
-    if (status == CV_OK)
-        status = take_up(s, tree, length, untried, &n);
-    for (; status == CV_OK && n > 0; n--) {         /* they come before those that are missing */
-        status = make_room(s);
-        if (status == CV_OK)
-            push(s, &untried[n - 1]);
-    }
-    free(untried);
-    if (status != CV_OK)
-        s->pending = 0;
-    s->status = status != CV_OK ? status : s->pending > 0 ? CV_RUNNING : CV_OK;
+    for (int j = n - 1; status == CV_OK && j >= 0; j--)
+        put_after(s, 0, &cells[j]);
     return status;
 }
 
-int cv_pending(const cv_search *s, cv_cell *cells)
+/* The leaf of a tree that is taken up; '?': untried. */
+static int is_leaf(const cv_search *s, char node, const cv_cell *c)
 {
-    for (int j = 0; cells != NULL && j < s->pending; j++)
-        cells[j] = s->stack[s->pending - 1 - j].cell;
-    return s->pending;
+    return node == 'P' || node == 'U' || node == '?' || islower((unsigned char)node) ||
+           (node == 'S' && may_skip(s, c));
 }
 
-const char *cv_tree(const cv_search *s, size_t *length)
+/* Reads the tree, whose text is s->old, and lists the prisms to be tried. */
+static int take_up(cv_search *s, const int hints[], int n_hints)
 {
-    *length = s->length;
-    return s->tree;
+    const int axes = s->method->axes(&s->problem);
+    cv_cell pending[MOST_PENDING] = { whole };
+    size_t first = s->old_length;       /* the untried prism */
+    int n = 1, last = 0;
+
+    s->examined = 1.0;
+    for (size_t j = 0; j < s->old_length || n > 0; j++) {
+        const char node = j < s->old_length ? s->old[j] : '?';
+        if (n == 0)
+            return CV_EARGUMENT;
+        cv_cell *const c = &pending[n - 1];
+        if (last > 0 && node != '?')
+            s->prisms[last].old_end = j + 1;
+        if (is_cut(node) && node < '0' + axes && may_halve(s, c, node - '0')) {
+            pending[n] = *c;
+            split_cell(&pending[n - 1], node - '0', &pending[n]);
+            n++;
+            continue;
+        }
+        n--;
+        if (!is_leaf(s, node, c))
+            return CV_EARGUMENT;
+        if (node != '?')
+            continue;
+        if (last == 0 && j < first)
+            first = j;
+        c->hint = n_hints > 0 ? *hints : 0;
+        hints += n_hints > 0;
+        n_hints -= n_hints > 0;
+        last = put_after(s, last, c);
+        s->prisms[last].old = s->prisms[last].old_end = j + 1;
+        s->examined -= ldexp(1.0, -all_cuts(c));
+    }
+    append_old(s, 0, first);
+    return CV_OK;
 }
 
-const cv_counts *cv_get_counts(const cv_search *s) { return &s->counts; }
-const int *cv_steps(const cv_search *s) { return s->steps; }
+int cv_resume(cv_search *s, const char *tree, size_t length, const int *hints, int n_hints)
+{
+    char *const old = malloc(length + 1);
+    int n = MOST_PENDING, status = old == NULL ? CV_ENOMEM : CV_OK;
+
+    for (size_t j = 0; j < length; j++)
+        n += tree[j] == '?';
+    if (status == CV_OK)
+        status = forget_tree(s, n);
+    if (status == CV_OK)
+        status = room_for_nodes(s, length);
+    if (status != CV_OK) {
+        free(old);
+        return status;
+    }
+    free(s->old);
+    s->old = memcpy(old, tree, length);
+    s->old_length = length;
+    s->enough = LONG_MAX;
+    s->most_points = HUGE_VAL;
+    status = take_up(s, hints, n_hints);
+    if (status == CV_OK) {
+        append_known(s);
+    } else {
+        forget_prisms(s);
+        s->status = status;
+    }
+    return status;
+}
+
+int cv_pending(cv_search *s, cv_cell *cells)
+{
+    int n = 0;
+
+    pthread_mutex_lock(&s->lock);
+    for (int id = s->prisms[0].next; id > 0; id = s->prisms[last_below(s, id)].next) {
+        if (cells != NULL)
+            cells[n] = s->prisms[id].cell;
+        n++;
+    }
+    pthread_mutex_unlock(&s->lock);
+    return n;
+}
+
+/* Writes the nodes after the tree's beginning: a '?' with its hint for each prism, though it may be
+   known what became of that, and the old nodes between them. */
+static size_t write_rest(const cv_search *s, char *tree, int *steps)
+{
+    size_t n = 0;
+
+    for (int id = s->prisms[0].next, last; id > 0; id = s->prisms[last].next) {
+        last = last_below(s, id);
+        tree[n] = '?';
+        steps[n++] = s->prisms[id].cell.hint;
+        for (size_t j = s->prisms[last].old; j < s->prisms[last].old_end; j++) {
+            tree[n] = s->old[j];
+            steps[n++] = OLD;
+        }
+    }
+    return n;
+}
+
+int cv_look(cv_search *s, size_t from, cv_view *view)
+{
+    int status = CV_OK;
+
+    pthread_mutex_lock(&s->lock);
+    *view = (cv_view){ .counts = s->counts,
+                       .examined = s->examined,
+                       .length = s->length,
+                       .finished = s->status == CV_OK,
+                       .needs_long = s->needs_long };
+    if (from <= s->length) {
+        const size_t n = s->length - from, room = n + (size_t)s->n_prisms + s->old_length;
+        view->tree = malloc(room);
+        view->steps = malloc(room * sizeof *view->steps);
+        if (view->tree == NULL || view->steps == NULL) {
+            status = CV_ENOMEM;
+        } else if (room > 0) {
+            memcpy(view->tree, s->tree + from, n);
+            memcpy(view->steps, s->steps + from, n * sizeof *view->steps);
+            view->length = n + write_rest(s, view->tree + n, view->steps + n);
+        }
+    }
+    pthread_mutex_unlock(&s->lock);
+    if (status != CV_OK)
+        cv_forget_view(view);
+    return status;
+}
+
+void cv_forget_view(cv_view *view)
+{
+    free(view->tree);
+    free(view->steps);
+    view->tree = NULL;
+    view->steps = NULL;
+}
+
 int cv_at_once(const cv_search *s) { return s->at_once; }
 void cv_free(char *text) { free(text); }
 

@@ -89,6 +89,20 @@ static int thesis_prepare(void **work, const patch *p, const precision *how,
     return status != CV_OK ? status : prepare_trial(w->quick, &w->root, herman_start, constants);
 }
 
+static int thesis_copy(void **copy, const void *work, const patch *p, const precision *how)
+{
+    apm_t constants[CV_N_CONSTANTS];
+    int at_once, status;
+
+    (void)work;
+    for (int j = 0; j < CV_N_CONSTANTS; j++)
+        apm_init(constants[j]);
+    status = thesis_prepare(copy, p, how, constants, &at_once);
+    for (int j = 0; j < CV_N_CONSTANTS; j++)
+        apm_clear(constants[j]);
+    return status;
+}
+
 static int thesis_axes(const patch *p)
 {
     (void)p;
@@ -155,6 +169,7 @@ const method method_thesis = {
     .choose_start = thesis_choose_start,
     .start_places = 16,
     .prepare = thesis_prepare,
+    .copy = thesis_copy,
     .free = free_bench,
     .axes = thesis_axes,
     .lanes = thesis_lanes,

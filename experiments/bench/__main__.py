@@ -22,7 +22,7 @@ from pathlib import Path
 
 from converse.model.exact import decimal_text
 from converse.model.map import LINE
-from converse.prover import tree_search
+from converse.prover import workers
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.append(str(ROOT / "tests"))
@@ -122,7 +122,7 @@ def frontier(repeat, older=None, whole=False):
     """The theorems of the sharper method: one thread, beside another commit's; all cores; the
     checker."""
     import converse
-    jobs = tree_search.count_workers()
+    jobs = workers.count_workers()
     print("method loewner, together, down to epsilon; its seconds and the checker's on one core")
     print("%-17s %9s %9s %6s | %9s %6s %9s %7s %7s | %9s %9s" % (
         "", "1 thread", "older", "ratio", "%d cores" % jobs, "ratio", "prisms", "points", "deepest",

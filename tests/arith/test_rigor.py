@@ -1,7 +1,6 @@
 """Builds and machines that break the rules are refused; memory may run out anywhere."""
 
 import ctypes
-import math
 import os
 import shutil
 import subprocess
@@ -91,10 +90,10 @@ def test_a_machine_spoilt_in_mid_run_is_noticed(shim, root, method):
 
     lib = ctypes.CDLL(str(shim))
     search = Search(Task(converse.read_input(root / "inputs" / "trig278.in"), Settings(method)))
-    assert search.prepare(None)
+    assert search.work(0, bool)
 
     def grow():
-        return search.grow([(*WHOLE, 0)], math.inf, 2 ** 30, None, False).text
+        return search.grow([(*WHOLE, 0)]).text
 
     good = grow()
     for which in (1, 2, 3):
@@ -148,17 +147,18 @@ def test_a_core_that_fuses_is_refused(tmp_path, monkeypatch):
 FAILING = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
+#include <stdatomic.h>
 #include <stdlib.h>
-static _Thread_local long left = -1;        /* allocations until all fail; -1: never */
-static _Thread_local int failed;
-void fail_after(long n) { left = n; failed = 0; }
+static atomic_long left = -1;           /* allocations of all threads until all fail; -1: never */
+static atomic_int failed;
+void fail_after(long n) { failed = 0; left = n; }
 int has_failed(void) { left = -1; return failed; }
 static int fails(void)
 {
-    if (left < 0) return 0;
-    if (left > 0) { left--; return 0; }
-    failed = 1;
-    return 1;
+    long now = left;
+    while (now > 0 && !atomic_compare_exchange_weak(&left, &now, now - 1)) continue;
+    if (now == 0) failed = 1;
+    return now == 0;
 }
 extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
 void *malloc(size_t n) { return fails() ? NULL : __libc_malloc(n); }
@@ -184,13 +184,26 @@ assert lib.cv_search_new(handle, problems[0], ffi.NULL, 0, 0, 30, 0, 0, 0) == li
 def new(dp=35, method=0, depth=30):
     code = lib.cv_search_new(handle, problems[method], ffi.NULL, method, dp, depth, 0, 0, 0)
     if code == 0:
-        code = lib.cv_prepare(handle[0], ffi.NULL)
+        code = grow(0)
         if code:
             lib.cv_search_free(handle[0])
             handle[0] = ffi.NULL
     return code
+def grow(threads):
+    code = lib.cv_start(handle[0], threads, 10**6, 1e300)
+    while not code and lib.cv_wait(handle[0], 1e9) == lib.CV_RUNNING:
+        pass
+    code = code or lib.cv_wait(handle[0], 0.0)
+    lib.cv_halt(handle[0])
+    return code
 def step():
-    return lib.cv_step(handle[0], 10**6, 1e300, 1e9, ffi.NULL)
+    return grow(1)
+def look():
+    view = ffi.new("cv_view *")
+    assert lib.cv_look(handle[0], 0, view) == 0
+    text = ffi.unpack(view.tree, view.length) if view.length else b""
+    lib.cv_forget_view(view)
+    return text.rstrip(b"?"), view.counts
 seen = {"new": 0, "step": 0, "loewner": 0}
 for n in list(range(0, 3000, 29)) + list(range(3000, 60000, 2999)):
     shim.fail_after(n)
@@ -203,11 +216,7 @@ for n in list(range(0, 3000, 29)) + list(range(3000, 60000, 2999)):
         lib.cv_search_free(handle[0])
 assert new() == 0
 step()
-length = ffi.new("size_t *")
-def tree():
-    text = lib.cv_tree(handle[0], length)
-    return ffi.unpack(text, length[0]) if length[0] else b""
-whole = tree()
+whole, _ = look()
 lib.cv_search_free(handle[0])
 for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
     assert new() == 0
@@ -215,9 +224,8 @@ for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
     code = step()
     failed = shim.has_failed()
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
-    part = tree()
+    part, counts = look()
     assert whole.startswith(part) and (failed or part == whole)
-    counts = lib.cv_get_counts(handle[0])
     assert counts.cuts == sum(map(part.count, (b"0", b"1")))
     assert counts.proved == part.count(b"P") and counts.symmetric == part.count(b"S")
     seen["step"] += bool(failed)

@@ -1,6 +1,7 @@
 """The rigorous C routines one at a time, from exact numbers to exact numbers: the console, which
 build.py builds."""
 
+import math
 from decimal import Decimal
 from fractions import Fraction
 from importlib.machinery import ExtensionFileLoader
@@ -189,9 +190,21 @@ def lanes(search: Any) -> int:
 
 
 def half_width(search: Any, axis: int) -> Fraction:
-    """Half of the width of v0 or v1, in radians, once it is prepared."""
+    """Half of the width of v0 or v1, in radians, once it is set up."""
     text = lib.search_half(ffi.cast("void *", int(native.ffi.cast("intptr_t", search))), axis)
     return Fraction(ffi.string(ffi.gc(text, lib.cv_free)).decode("ascii"))
+
+
+def grow(search: Any, leaves: int = native.MANY) -> str:
+    """The text of a search of the product's, its handle, when it has so many leaves more."""
+    check(native.lib.cv_start(search, 1, leaves, math.inf))
+    while check(native.lib.cv_wait(search, 1.0)) == native.lib.CV_RUNNING:
+        pass
+    view = native.ffi.new("cv_view *")
+    check(native.lib.cv_look(search, 0, view))
+    text = native.ffi.unpack(view.tree, view.length).decode("ascii") if view.length else ""
+    native.lib.cv_forget_view(view)
+    return text
 
 
 def symmetric(search: Any) -> bool:

@@ -119,12 +119,12 @@ static int bounds(long dp, apm_t in[], apm_t out[])     /* doubles not above and
 
 static void ask_and_poll(void *stop)
 {
-    cv_stop_set(stop);
+    ask_to_stop(stop, 1);
     guard_poll();
 }
 
 typedef struct {
-    cv_stop *inner, *outer;
+    stop_request inner, outer;
     int ended;
 } nested;
 
@@ -132,21 +132,19 @@ static void nest(void *data)
 {
     nested *const n = data;
 
-    n->ended = guard_run(ask_and_poll, n->inner, n->inner);
-    ask_and_poll(n->outer);
+    n->ended = guard_run(ask_and_poll, &n->inner, &n->inner);
+    ask_and_poll(&n->outer);
 }
 
 /* How a guard within a guard ends where it is stopped, and then the other one. */
 static int guards(long dp, apm_t in[], apm_t out[])
 {
-    nested n = { cv_stop_new(), cv_stop_new(), -1 };
+    nested n = { { 0 }, { 0 }, -1 };
 
     (void)dp;
     (void)in;
-    apm_set_si(out[1], guard_run(nest, &n, n.outer), 0);
+    apm_set_si(out[1], guard_run(nest, &n, &n.outer), 0);
     apm_set_si(out[0], n.ended, 0);
-    cv_stop_free(n.inner);
-    cv_stop_free(n.outer);
     return CV_OK;
 }
 

@@ -21,9 +21,8 @@ from converse import Problem, Settings, prove
 from converse.model.map import LINE, MuldoonMap
 from converse.model.region import EXCHANGE, REVERSAL
 from converse.prover import run
-from converse.prover.native import Search, Task, ffi, lib
+from converse.prover.native import Search, Task
 from converse.prover.tree import ROOT, cells, complete
-from converse.prover.tree_search import MANY
 
 import kernels
 from truth import SANITIZED, TORTURE, beta, mp, rng_for, uniform
@@ -851,10 +850,10 @@ def test_nor_over_several_starting_points(problem):
     assert not result.no_tori and result.report().startswith("UNDECIDED: ")
 
 
-def grow(task, cell, max_leaves=MANY):
+def grow(task, cell, max_leaves=2 ** 30):
     search = Search(task)
-    assert search.prepare(None)
-    return search.grow([cell], math.inf, max_leaves, None, False)
+    assert search.work(0, bool)
+    return search.grow([cell], max_leaves)
 
 
 @pytest.mark.slow
@@ -897,10 +896,9 @@ def test_any_number_of_lanes_grows_the_same_tree(problem, monkeypatch):
     for lanes in LANES:
         monkeypatch.setenv("CONVERSE_LANES", lanes)
         search = Search(Task(problem, Settings(method="loewner", depth=24, stubborn=True)))
-        assert search.prepare(None)
-        begun = search.begin("")
-        found = search.grow(begun.cells, math.inf, MANY, None, True)
-        grown[lanes] = (found.text, found.steps, found.counts, begun.constants)
+        assert search.work(0, bool)
+        found = search.grow()
+        grown[lanes] = (found.text, found.steps, found.counts, search.constants)
         assert kernels.lanes(search.handle) <= int(lanes)
         found_lanes.add(kernels.lanes(search.handle))
     assert len(grown["2"][0]) > 100 and all(grown[lanes] == grown["2"] for lanes in LANES)
@@ -942,15 +940,15 @@ def test_no_company_matters(problem, star, monkeypatch):
     for lanes in LANES:
         monkeypatch.setenv("CONVERSE_LANES", lanes)
         search = Search(task)
-        assert search.prepare(None)
+        assert search.work(0, bool)
         rng.shuffle(found)
         cells, text, steps = [cell for cell, _ in found], "", []
         while cells:                        # with something else now and then
-            grown = search.grow(cells, math.inf, rng.choice([1, 5, 40]), None, True)
+            grown = search.grow(cells, rng.choice([1, 5, 40]))
             text, steps, cells = text + grown.text, steps + grown.steps, grown.cells
-            search.grow(random_cells(rng, problem.together, 9), math.inf, 3, None, False)
+            search.grow(random_cells(rng, problem.together, 9), 3)
         assert text == "".join(grown.text for _, grown in found)
-        whole = search.grow([cell for cell, _ in found], math.inf, MANY, None, True)
+        whole = search.grow([cell for cell, _ in found])
         assert whole.text == text and whole.steps == steps
 
 
@@ -961,8 +959,8 @@ def test_an_orbit_ends_where_it_cannot_go_on(a, half):
         problem = Problem.around((*(Fraction(a), 0)[::way], 0, *(Fraction("-0.4"), 0)[::way]),
                                  (*(Fraction(half), 0)[::way], 0, 0, 0))
         search = Search(Task(problem, Settings("loewner", 0, stubborn=True), ("-1", "0")[::way]))
-        assert search.prepare(None)
-        grown = search.grow([(*ROOT, 0)], math.inf, MANY, None, True)
+        assert search.work(0, bool)
+        grown = search.grow([(*ROOT, 0)])
         assert (grown.text, grown.steps) == ("U", [2])
         assert grown.counts.reasons == (0, 0, 0, 1, 0, 0)
 
@@ -972,15 +970,11 @@ def test_a_search_that_was_busy_takes_up_a_tree():
     task, texts = Task(line("0.0200", "0.0280"), Settings("loewner", 14, stubborn=True)), []
     for busy in (0, 1, 7, 30):
         search = Search(task)
-        assert search.prepare(None)
+        assert search.work(0, bool)
         if busy:
-            search.grow([((5, 9, 1, 0, 0), (4, 4, 1, 0, 0), 0), (*ROOT, 0)], math.inf, busy, None,
-                        False)
-        search.begin("20")                  # there are three cells
-        assert lib.cv_step(search.handle, MANY, math.inf, math.inf, ffi.NULL) == lib.CV_OK
-        size = ffi.new("size_t *")
-        text = lib.cv_tree(search.handle, size)
-        texts.append(ffi.unpack(text, size[0]))
+            search.grow([((5, 9, 1, 0, 0), (4, 4, 1, 0, 0), 0), (*ROOT, 0)], busy)
+        search.resume("20", [])             # there are three cells
+        texts.append(search.grow().text)
     assert len(texts[0]) > 50 and texts == [texts[0]] * 4
 
 

@@ -19,21 +19,17 @@ def decide(parameters, xstar=None, most=20000):
     problem = parameters if isinstance(parameters, Problem) else \
         Problem(MuldoonMap(*parameters))
     search = native.Search(native.Task(problem, Settings(method="loewner"), xstar))
-    assert search.prepare(None)
-    begun = search.begin("")
-    cells, tries, undecided = begun.cells, 0, 0
-    while cells and tries < most and not undecided:
-        grown = search.grow(cells, math.inf, 500, None, False)
-        cells, undecided = grown.cells, grown.counts.undecided
-        tries += grown.counts.tries
-    return tuple(map(float, begun.xstar)), tries, not cells and not undecided
+    assert search.work(0, bool)
+    search.work(1, lambda: search.view().counts.tries >= most)
+    counts, finished = search.view().counts, search.view().finished
+    return tuple(map(float, search.xstar)), counts.tries, finished and not counts.undecided
 
 
 def largest(*ranges):
     """B of three ranges."""
     search = native.Search(native.Task(Problem(MuldoonMap(*ranges)), Settings(method="loewner")))
-    assert search.prepare(None)
-    return float(search.begin("").constants["B"])
+    assert search.work(0, bool)
+    return float(search.constants["B"])
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])

@@ -121,10 +121,10 @@ def test_long_orbits_are_asked_about_when_a_prism_first_needs_one(jobs, asked, m
 
 def test_a_question_about_long_orbits_obeys_the_time_limit(asked, monkeypatch, tmp_path):
     """What was grown before it stands."""
-    def longest(problem, xstar, stop):
-        while not stop.is_set():
+    def longest(problem, xstar, threads, is_late):
+        while not is_late():
             time.sleep(0.01)
-        return orbit_length.longest(problem, xstar, stop)
+        return orbit_length.longest(problem, xstar, threads, is_late)
 
     path, told = tmp_path / "proof", []
     with monkeypatch.context() as patched:
@@ -143,9 +143,9 @@ def test_the_longest_orbits():
     for longest, points in ((0, 1 << 17), (1 << 17, 1 << 17), (native.ORDINARY, native.ORDINARY)):
         task = native.Task(problem, Settings("loewner", 46, stubborn=True), xstar, longest)
         search = native.Search(task)
-        search.prepare(None)
+        search.work(0, bool)
         cell = orbit_length._thinnest(0, 6, 51, ())
-        grown = search.grow([cell], 1e300, 10, None, True)
+        grown = search.grow([cell], 10)
         assert grown.text == "U" and grown.steps == [points]
     with pytest.raises(ConverseError):
         native.Search(native.Task(problem, Settings("loewner"), xstar, (1 << 17) + 1))
@@ -157,10 +157,10 @@ def test_prisms_with_the_longest_orbits_are_not_cut():
     proof = Proof((Tree(Problem(MuldoonMap("0.9", 0, 0)), None),), Settings(method="loewner"))
     problem, xstar = ready(proof).problem, ready(proof).xstar
     search = native.Search(native.Task(problem, Settings("loewner", 46, stubborn=True), xstar, 100))
-    search.prepare(None)
+    search.work(0, bool)
     cuts = orbit_length.CUTS - 6
     cell = [103 << cuts - 7, 0, 0, 0, 0], [cuts, 0, 0, 0, 0], 0
-    grown = search.grow([cell], 1e300, 10, None, True)
+    grown = search.grow([cell], 10)
     assert grown.text == "U" and grown.steps == [100]
 
 

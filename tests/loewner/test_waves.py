@@ -534,12 +534,9 @@ def searched(patch, xstar=None, leaves=20000):
     assert lib.cv_search_new(handle, native_problem(patch, owners), texts or ffi.NULL,
                              lib.CV_LOEWNER, 30, 150, 0, 0, 0) == lib.CV_OK
     s = ffi.gc(handle[0], lib.cv_search_free)
-    assert lib.cv_prepare(s, ffi.NULL) == lib.CV_OK
-    lib.cv_step(s, leaves, 1e300, 1e9, ffi.NULL)
-    length = ffi.new("size_t *")
-    text = lib.cv_tree(s, length)
+    text = kernels.grow(s, leaves)
     assert lib.cv_pending(s, ffi.NULL) == 0
-    return s, ffi.unpack(text, length[0]).decode()
+    return s, text
 
 
 LINE = ("0.19", "0.19", "0.38")
@@ -595,12 +592,9 @@ def test_what_minimizes_is_met_where_the_region_has_it(sign):
     assert lib.cv_search_new(handle, native_problem(patch, owners), star, lib.CV_LOEWNER, 30, 16,
                              1, 0, 0) == lib.CV_OK
     s = ffi.gc(handle[0], lib.cv_search_free)
-    assert lib.cv_prepare(s, ffi.NULL) == lib.CV_OK
-    lib.cv_step(s, 10 ** 6, 1e300, 1e9, ffi.NULL)
-    length = ffi.new("size_t *")
-    text = lib.cv_tree(s, length)
+    text = kernels.grow(s)
     resist = [sign * (Fraction(2 * index[2] + 1, 1 << cuts[2]) - 1)
-              for kind, (index, cuts) in cells(ffi.unpack(text, length[0]).decode())
+              for kind, (index, cuts) in cells(text)
               if kind != "P"]
     assert min(resist) < Fraction("-0.99") and max(resist) < Fraction(1, 2)
 
@@ -614,7 +608,8 @@ def test_mirror_images_of_regions_that_move():
         patch = patch_of(THESIS, LINE, [("0.0001", "0.0001", "0.0002")], shifts=shifts, **ends)
         s, tree = searched(patch, ("0.858", "0.858"))
         assert bool(kernels.symmetric(s)) == skips == ("S" in tree)
-        assert lib.cv_resume(s, b"01PS1PP", 7) == (lib.CV_OK if skips else lib.CV_EARGUMENT)
+        assert lib.cv_resume(s, b"01PS1PP", 7, ffi.NULL, 0) == (
+            lib.CV_OK if skips else lib.CV_EARGUMENT)
 
 
 def test_the_thesis_knows_of_no_shifts():

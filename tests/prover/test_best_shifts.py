@@ -26,8 +26,8 @@ def line(low, high=None, axes=(1, 1, 1, -1)):
 
 
 def grown(problem, depth=120, stubborn=False):
-    return native.survey(native.Task(problem, Settings("loewner", depth, stubborn=stubborn), HERE),
-                         100000, math.inf)
+    return native.grow(native.Task(problem, Settings("loewner", depth, stubborn=stubborn), HERE),
+                       leaves=100000)
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,8 @@ from conftest import ROOT
 from converse import ConverseError, Problem, Proof, prove
 from converse.model.exact import decimal_text
 from converse.model.map import LINE
-from converse.prover import native, run, tree, tree_search, workers
+from converse.prover import native, run, shared, tree, workers
+from converse.prover.settings import Settings
 
 from moments import PATIENCE
 from truth import TORTURE
@@ -38,17 +39,12 @@ LONG = line("0.01405", "0.0149")            # a third of a second, 27,696 leaves
 
 @pytest.fixture(autouse=True)
 def early(monkeypatch):
-    """Divides the work sooner and more finely than usual."""
-    monkeypatch.setattr(tree_search, "TASK_SECONDS", 0.01)
-    monkeypatch.setattr(tree_search, "ALONE_SECONDS", 0.005)
-
-
-@pytest.fixture
-def divided(monkeypatch):
-    """Divides the work from the beginning, however long the search took to set up."""
-    monkeypatch.setattr(tree_search.TreeSearch, "alone_until",
-                        property(lambda self: 0.0, lambda *_: None),
-                        raising=False)
+    """Hands the work to an executor from the beginning, in smaller tasks than usual."""
+    monkeypatch.setattr(native, "LOOK_SECONDS", 0.005)
+    monkeypatch.setattr(run, "ALONE_SECONDS", 0.0)
+    monkeypatch.setattr(run, "ALONE_RATIO", 0)
+    monkeypatch.setattr(shared, "TASK_SECONDS", 0.02)
+    monkeypatch.setattr(shared, "TASK_RATIO", 0)
 
 
 @pytest.fixture
@@ -90,9 +86,10 @@ def test_undecided_prisms(stubborn):
     alone, many = (timeless(prove(problem, depth=13, stubborn=stubborn, method="loewner",
                                   jobs=jobs))
                    for jobs in (1, 3))
-    assert alone.undecided and alone.tree == many.tree
-    if stubborn:                            # else some worked on what became of no use
-        assert alone == many
+    assert alone.undecided and alone == many
+    with concurrent.futures.ThreadPoolExecutor(3) as executor:
+        assert timeless(prove(problem, depth=13, stubborn=stubborn, method="loewner",
+                              executor=executor)) == alone
 
 
 def test_processes(proof):
@@ -119,13 +116,13 @@ def die(*args):
     raise OSError("the worker died")
 
 
-def test_lost_tasks_are_given_out_again(proof, divided):
+def test_lost_tasks_are_given_out_again(proof):
     with Unreliable(2) as executor:
         assert timeless(prove(LONG, method="loewner", executor=executor)) == proof
         assert executor.lost
 
 
-def test_workers_that_always_die(divided):
+def test_workers_that_always_die():
     class Dead(concurrent.futures.ThreadPoolExecutor):
         def submit(self, work, *args):
             return super().submit(die)
@@ -134,18 +131,17 @@ def test_workers_that_always_die(divided):
         prove(LONG, method="loewner", executor=executor)
 
 
-def test_an_executor_that_is_gone(divided):
+def test_an_executor_that_is_gone():
     executor = concurrent.futures.ThreadPoolExecutor(1)
     executor.shutdown()
     with pytest.raises(ConverseError, match="workers are gone"):
         prove(LONG, method="loewner", executor=executor)
 
 
-def test_time_limit_and_resume(proof, tmp_path, monkeypatch, ends):
+def test_time_limit_and_resume(proof, tmp_path, ends):
     """The time is up after some thousands of cuts, and again, and again."""
-    monkeypatch.setattr(tree_search, "MANY", 500)        # so many leaves are not far beyond
     path, runs, cuts = tmp_path / "a.proof", 1, 0
-    ends(lambda self: self.search.counts.cuts > cuts + 5000)
+    ends(lambda self: (self.counts_before + self.view.counts).cuts > cuts + 2000)
     result = prove(LONG, method="loewner", jobs=3, backup=path)
     while not result.all_decided:
         assert timeless(Proof.load(path)) == timeless(result) and result.counts.cuts > cuts
@@ -168,8 +164,7 @@ class Inline(concurrent.futures.Executor):
 def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
     """Whatever line of the bookkeeping an exception strikes, what was saved leads to the same
     tree."""
-    monkeypatch.setattr(tree_search, "TASK_SECONDS", 0.001)
-    monkeypatch.setattr(tree_search, "ALONE_SECONDS", 0.0)
+    monkeypatch.setattr(shared, "TASK_SECONDS", 0.001)
     monkeypatch.setattr("converse.storage.backup.SECONDS", 0.005)
     problem, path = line("0.0165", "0.0280"), tmp_path / "a.proof"
     whole = timeless(prove(problem, method="loewner", jobs=1, depth=depth))
@@ -177,7 +172,7 @@ def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
     rng, struck, lines = random.Random(1), [], [0, 0]
 
     def trace(frame, event, _):
-        if frame.f_code.co_filename != tree_search.__file__ or "self" not in frame.f_locals:
+        if frame.f_code.co_filename != shared.__file__ or "self" not in frame.f_locals:
             return None
         if event == "line":
             lines[0] += 1
@@ -200,30 +195,31 @@ def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
         most = lines[0] if len(struck) == before else most
         if path.exists():
             result = timeless(prove(resume=path, jobs=1))
-            assert result == whole if whole.no_tori else result.tree == whole.tree
+            assert result == whole
     assert len(struck) > runs / 2
 
 
 KILLED = """
 import os, signal, sys
 from converse import prove
-from converse.prover import run, tree_search
+from converse.prover import native, run
 from converse.storage import backup
 sys.path[:0] = %r
 from test_parallel import LONG
 path, resume, cuts, torn = sys.argv[1:]
 backup.SECONDS = backup.SHARE = 0               # it is written at every look
-tree_search.MANY = 500                               # leaves, and then it is looked
+native.LOOK_SECONDS = 0.005
 looked = run._Run._look
 def kill(*_):
     os.kill(os.getpid(), signal.SIGKILL)
 def look(self):
-    there = self.search.counts.cuts > int(cuts)
+    there = (self.counts_before + self.search.view().counts).cuts > int(cuts)
     if there and torn:
         os.replace = kill                       # while it is written
-    looked(self)
+    end = looked(self)
     if there:
         kill()
+    return end
 run._Run._look = look
 prove(jobs=2, **({"resume": path} if resume else {"source": LONG, "backup": path}))
 """
@@ -267,7 +263,7 @@ def cluster(dask, monkeypatch):
     return cluster
 
 
-def test_dask_without_workers(proof, divided, cluster):
+def test_dask_without_workers(proof, cluster):
     """They are waited for, which is said; a cluster that adapts starts one, since there is a
     task."""
     made, client = cluster(0)
@@ -277,7 +273,7 @@ def test_dask_without_workers(proof, divided, cluster):
     adaptive.stop()
 
 
-def test_dask_without_this_program(divided, cluster, monkeypatch):
+def test_dask_without_this_program(cluster, monkeypatch):
     """A worker that lacks it would die of the first task: it is not sent."""
     monkeypatch.setattr(workers, "PROBE", workers.PROBE.replace("converse", "no_such_package"))
     _, client = cluster(1)
@@ -288,7 +284,7 @@ def test_dask_without_this_program(divided, cluster, monkeypatch):
         prove(LONG, method="loewner", executor=executor)
 
 
-def test_dask_workers_that_join_later(proof, divided, ends, cluster):
+def test_dask_workers_that_join_later(proof, ends, cluster):
     """They are given work: one worker has two tasks at a time."""
     made, client = cluster(1)
     executor = client.get_executor()
@@ -301,12 +297,12 @@ def test_dask_workers_that_join_later(proof, divided, ends, cluster):
         return submit(*args)
 
     executor.submit = submit_and_grow
-    ends(lambda self: len(self.search.pool.running) > 2)
+    ends(lambda self: len(self.pool.running) > 3)
     half = prove(line("0.0140", "0.0280"), method="loewner", executor=executor)
     assert not half.all_decided and submitted
 
 
-def test_dask_loses_a_worker(proof, divided, cluster):
+def test_dask_loses_a_worker(proof, cluster):
     _, client = cluster(2)
     pid = next(iter(client.run(os.getpid).values()))
     executor, submitted = client.get_executor(), []
@@ -336,21 +332,22 @@ def test_a_scheduler_that_does_not_answer_is_called_so():
         assert workers.WorkerPool(executor, None).size == 0
 
 
-def test_dask_loses_its_scheduler(divided, tmp_path, proof):
+def test_dask_loses_its_scheduler(tmp_path, proof):
     """What was found is saved, one line says so, and the command ends."""
     distributed = pytest.importorskip("distributed")
     code = """
 import os, signal, sys
 from converse.commands.prove import main
-from converse.prover import run, tree_search
-tree_search.ALONE_SECONDS = tree_search.TASK_SECONDS = 0.01
-took, grow, scheduler = [], tree_search.TreeSearch._take, int(sys.argv.pop(1))
+from converse.prover import run, shared
+run.ALONE_SECONDS = run.ALONE_RATIO = shared.TASK_RATIO = 0
+shared.TASK_SECONDS = 0.01
+took, grow, scheduler = [], shared.Shared._take, int(sys.argv.pop(1))
 def take(self, part, grown):
     grow(self, part, grown)
     took.append(part)
     if len(took) == 5:
         os.kill(scheduler, signal.SIGKILL)
-tree_search.TreeSearch._take = take
+shared.Shared._take = take
 sys.exit(main())
 """
     with contextlib.ExitStack() as stack:
@@ -407,22 +404,22 @@ class Late(Inline):
 
 
 @pytest.mark.parametrize("jobs", [2, 5])
-def test_an_undecided_prism_before_finished_ones(tmp_path, monkeypatch, divided, jobs):
+def test_an_undecided_prism_before_finished_ones(tmp_path, monkeypatch, jobs):
     """A search that is not stubborn ends at the first; what others did beyond it is of no
     account."""
-    grow = native.grow                                  # a task ends after 40 leaves, however slow
-    monkeypatch.setattr(native, "grow", lambda task, cells, seconds, many, *rest: grow(
-        task, cells, math.inf, 40, *rest))
-    executor = Late()
+    executor, taken, take = Late(), [], shared.Shared._take
+    monkeypatch.setattr(shared.Shared, "_take", lambda self, part, grown: (
+        taken.append(self.parts.index(part) if part in self.parts else None),
+        take(self, part, grown)))
     monkeypatch.setattr(concurrent.futures, "wait", executor.wait)
+    grow = native.Search.grow           # a task ends after 40 leaves, however slow the machine is
+    monkeypatch.setattr(native.Search, "grow", lambda self, cells, look: grow(self, cells, 40))
     problem, path = line("0.0170", "0.0280"), tmp_path / "a.proof"
     alone = prove(problem, method="loewner", depth=15, jobs=1)
     assert alone.undecided
     many = prove(problem, method="loewner", depth=15, executor=executor, jobs=jobs, backup=path)
-    assert many.counts.tries > alone.counts.tries       # it did go that way
-    assert many.tree == alone.tree and "Undecided  1 prism, " in many.report()
-    for kind in "cuts", "proved", "symmetric", "undecided":
-        assert getattr(many.counts, kind) == getattr(alone.counts, kind)
+    assert max(filter(None, taken)) > 1         # it did go that way
+    assert timeless(many) == timeless(alone) and "Undecided  1 prism, " in many.report()
     deeper = prove(resume=path, depth=120, executor=executor,
                    jobs=jobs)    # and it can be continued
     assert deeper.no_tori and deeper.counts.undecided == 0
@@ -440,34 +437,11 @@ def test_continuing_less_stubbornly_is_refused(tmp_path):
     assert prove(resume=path, stubborn=False, depth=120).no_tori
 
 
-def test_what_comes_late_is_kept(tmp_path, monkeypatch, divided, ends):
-    """At the time limit the workers are waited for a little, and what they bring is in the
-    backup."""
-    class Slow(concurrent.futures.ThreadPoolExecutor):
-        def submit(self, work, *args):
-            def slowly():
-                grown = work(*args)
-                brought.append(grown.text)      # with this the time is up
-                time.sleep(0.4)
-                return grown
-
-            return super().submit(slowly)
-
-    path, brought = tmp_path / "a.proof", []
-    monkeypatch.setattr(tree_search, "TASK_SECONDS", 20)         # how long they are waited for
-    ends(lambda self: brought)
-    with Slow(2) as executor:
-        result = prove(LONG, method="loewner", executor=executor, backup=path)
-    tree = Proof.load(path).tree
-    assert tree == result.tree and "".join(brought) and all(text in tree for text in brought)
-    assert not result.no_tori and not result.undecided      # it was left as it was
-
-
 @pytest.mark.parametrize("stubborn", [False, True])
-def test_what_is_examined_never_falls(divided, ends, stubborn):
+def test_what_is_examined_never_falls(ends, stubborn):
     """It is the share of the volume that lies in leaves, whoever is at work."""
     seen = []
-    ends(lambda self: self.search.counts.cuts > 3000)
+    ends(lambda self: self.view.counts.cuts > 1000)
     half = prove(line("0.0130", "0.0280"), method="loewner", jobs=3, depth=22, stubborn=stubborn,
                  progress=lambda examined, _: seen.append(examined))
     assert seen == sorted(seen) and seen[0] == 0 and 0 < seen[-1] < 1
@@ -478,24 +452,15 @@ def test_what_is_examined_never_falls(divided, ends, stubborn):
 
 def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
     """Unless the search is stubborn: then the next part follows as always."""
-    from converse.prover.native import Settings, Task
+    def part(text):
+        return shared.Part(text, counts=native.Counts(**dict(zip(tree.NODES, tree.count(text)))))
 
     for stubborn, text in (False, "0U"), (True, "0UP"):
-        grown = tree_search.TreeSearch(Task(LONG, Settings("loewner", stubborn=stubborn)), 1)
-        grown.parts = [tree_search.Part([], "0U"), tree_search.Part([], "P")]
-        grown._merge()
-        assert grown.finished and grown.text() == (text, [])
-        assert (grown.counts.proved, grown.counts.undecided) == (int(stubborn), 1)
-
-
-def test_many_gaps_cost_little(monkeypatch):
-    """Thousands of prisms that were given up are tried again without a look at all of them for
-    each."""
-    shallow = prove(line("0.0130", "0.0280"), method="loewner", depth=18, stubborn=True)
-    assert shallow.tree.count("U") > 2000
-    monkeypatch.setattr(run, "LOOK_SECONDS", PATIENCE)      # however slowly it goes on
-    looks, merge = [], tree_search.TreeSearch._merge
-    monkeypatch.setattr(tree_search.TreeSearch, "_merge",
-                        lambda self: (looks.append(self), merge(self)))
-    assert prove(resume=shallow, depth=19, jobs=2).counts.cuts > shallow.counts.cuts
-    assert len(looks) < 300
+        task = native.Task(LONG, Settings("loewner", stubborn=stubborn))
+        search = native.Search(task)
+        search.work(0, bool)
+        grown = shared.Shared(task, search, None, 0.0, False)
+        grown.parts = [part("0U"), part("P")]
+        view = grown.view(0)
+        assert view.finished and view.text == text
+        assert (view.counts.proved, view.counts.undecided) == (int(stubborn), 1)

@@ -19,7 +19,7 @@ from converse import (ConverseError, Counts, Problem, Proof, Settings, StandardM
 from converse.draw import plot
 from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.problem import IDENTITY
-from converse.prover import native, run, tree_search
+from converse.prover import native, run, shared
 from converse.prover.report import verdict
 from converse.prover.tree import leaves
 from converse.storage import files
@@ -204,19 +204,20 @@ def test_save_keeps_the_older_file(tmp_path, made_up, monkeypatch):
 def interrupted(monkeypatch):
     """A run that Ctrl-C ends after so many leaves."""
     def interrupted(problem, backup, leaves_done, **options):
-        left = [leaves_done]
+        work = native.Search.work
         if problem is not None:
             options["method"] = "thesis"
 
-        def on_leaf(*_):
-            left[0] -= 1
-            if left[0] == 0:
+        def struck(self, threads, look):
+            work(self, threads, look, leaves_done)
+            if threads:
                 raise KeyboardInterrupt
+            return True
 
         with monkeypatch.context() as patch:
-            patch.setattr(tree_search, "MANY", 1)        # leaves at a time
+            patch.setattr(native.Search, "work", struck)
             with pytest.raises(KeyboardInterrupt):
-                prove(problem, backup=backup, on_leaf=on_leaf, jobs=1, **options)
+                prove(problem, backup=backup, jobs=2, **options)
     return interrupted
 
 
@@ -373,8 +374,14 @@ def test_a_failing_backup_does_not_end_the_run(tmp_path, problem, proof, monkeyp
     path = tmp_path / "a.proof"
     monkeypatch.setattr("converse.storage.backup.SECONDS", 0.0)
     monkeypatch.setattr("converse.storage.backup.SHARE", 0)
-    monkeypatch.setattr(tree_search, "MANY", 1)
-    writes, write = [], files.write
+    writes, write, work = [], files.write, native.Search.work
+
+    def leaf_by_leaf(self, threads, look):
+        while work(self, threads, look, 1) and threads and not look():
+            pass
+        return True
+
+    monkeypatch.setattr(native.Search, "work", leaf_by_leaf)
 
     def full(name, data):
         writes.append(name)
@@ -401,7 +408,10 @@ def test_a_backup_that_cannot_be_begun_is_an_error(tmp_path, problem, monkeypatc
 @pytest.mark.parametrize("jobs", [1, 4])
 def test_leaves_in_order_by_many_workers(problem, proof, jobs, monkeypatch):
     """on_leaf hears of every leaf in preorder, with its orbit's length, whoever decided it."""
-    monkeypatch.setattr(tree_search, "ALONE_SECONDS", 0.0)
+    monkeypatch.setattr(run, "ALONE_SECONDS", 0.0)
+    monkeypatch.setattr(run, "ALONE_RATIO", 0)
+    monkeypatch.setattr(native, "LOOK_SECONDS", 0.002)
+    monkeypatch.setattr(shared, "TASK_SECONDS", 0.01)
     expected = []
     prove(problem, jobs=1, on_leaf=lambda *leaf: expected.append(leaf), method="thesis")
     assert [leaf for leaf, _ in expected] == list(leaves(problem, proof.tree))
@@ -425,43 +435,34 @@ def test_a_long_set_up_obeys(problem, monkeypatch):
     """At a hundred thousand places pi alone takes seconds."""
     result = prove(problem, digits=100000, time_limit=0.2)
     assert result.tree == "" and result.constants == {}
-    begin, left, begun, found = native.begin, run._Run._seconds_left, threading.Event(), []
+    work, left, begun, done = native.Search.work, run._Run._seconds_left, [], []
 
     def tells(*arguments):
-        begun.set()
-        found.append(begin(*arguments))
+        begun.append(None)
+        done.append(work(*arguments))
 
     def strikes(self):
-        begun.wait()
-        signal.raise_signal(signal.SIGINT)
+        if begun:
+            signal.raise_signal(signal.SIGINT)
         return left(self)
 
-    monkeypatch.setattr(native, "begin", tells)
+    monkeypatch.setattr(native.Search, "work", tells)
     monkeypatch.setattr(run._Run, "_seconds_left", strikes)
     with pytest.raises(KeyboardInterrupt):
         prove(problem, digits=100000)
-    assert found == [None]              # it was left in the middle
+    assert begun and not done           # it was left in the middle
 
 
 def test_a_long_prism_obeys(problem, proof, monkeypatch):
     """A rigorous try with thousands of digits is left in the middle, and nothing comes of it."""
-    grow, grown, up = native.grow, [], threading.Event()
-
-    def tells(task, cells, seconds, leaves, want_steps, stop):
-        if grown and proof.tree.startswith("".join(grown) + "P"):      # now comes such a try
-            up.set()
-            while not stop.is_set():
-                time.sleep(0.005)
-        found = grow(task, cells, PATIENCE, 1, want_steps, stop)
-        grown.append(found.text)
-        return found
-
-    monkeypatch.setattr(native, "grow", tells)
-    monkeypatch.setattr(tree_search, "TASK_SECONDS", PATIENCE)   # it is waited for
-    monkeypatch.setattr(run._Run, "_seconds_left",
-                        lambda self: -math.inf if up.is_set() else math.inf)
-    result = prove(problem, digits=20000, jobs=1)
-    assert not result.all_decided and result.tree == "".join(grown) != "" == grown[-1]
+    monkeypatch.setattr(native, "LOOK_SECONDS", 0.01)
+    monkeypatch.setattr(run._Run, "_seconds_left", lambda self: (
+        -math.inf if self.search is not None and self.view.counts.cuts else math.inf))
+    began = time.monotonic()
+    result = prove(problem, digits=20000, jobs=2)
+    assert not result.all_decided and proof.tree.startswith(result.tree) and result.tree
+    assert time.monotonic() - began < PATIENCE
+    assert result.counts.Rtries == result.tree.count("P")
 
 
 def test_verify(proof, problem, made_up):

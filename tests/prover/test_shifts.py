@@ -1,6 +1,5 @@
 """Regions of parts that move with the parameters: links into them, proofs, files and reports."""
 
-import math
 import re
 from dataclasses import replace
 from fractions import Fraction
@@ -204,11 +203,12 @@ def begun():
     problem = replace(before.problem, v0=(Fraction("0.2"), Fraction("1.3")),
                       v1=(Fraction("-0.1"), Fraction("1.1")))
     task = native.Task(problem, Settings("loewner", 8, stubborn=True), HERE)
-    start = native.begin(task, "", None)
-    grown = native.survey(task, 10 ** 5, math.inf)
+    search = native.Search(task)
+    search.work(0, bool)
+    grown = search.grow(leaves=10 ** 5)
     cells = [cell for kind, cell in tree.cells(grown.text) if kind == "U"]
     assert len(cells) > 3
-    largest = Fraction(start.constants["B"])
+    largest = Fraction(search.constants["B"])
     first, parts = Links(problem, largest, HERE, HERE), []
     shifts = (Fraction("-0.05"), Fraction("0.03")),
     parts.append(Tree(problem.part(region_of(problem, cells, first, shifts), shifts), HERE))
@@ -221,7 +221,7 @@ def begun():
     region = region_of(middle, [tree.ROOT], second, (other,))
     parts = [replace(parts[0], text="b"), Tree(middle.part(region, (other,)), there)]
     return Proof((Tree(problem, HERE, text), *parts), Settings("loewner"), replace(
-        grown.counts, undecided=0, linked=text.count("a") + 1), start.constants)
+        grown.counts, undecided=0, linked=text.count("a") + 1), search.constants)
 
 
 @pytest.fixture(scope="module")
@@ -386,7 +386,7 @@ def test_shifts_in_radians(digits):
     for shifts in (), ((Fraction("0.0123456789"), Fraction("-0.5")),):
         problem = line("0.0150", "0.0151").part(((0, 1), (0, 1)), shifts)
         search = native.Search(native.Task(problem, Settings("loewner", digits=digits), HERE))
-        assert search.prepare(None)
+        assert search.work(0, bool)
         halves.append([kernels.half_width(search.handle, axis) for axis in range(2)])
     places = max(digits, 35) - 5
     for i, shift in enumerate(shifts[0]):

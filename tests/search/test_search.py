@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-import threading
 from fractions import Fraction
 from threading import Thread
 
@@ -255,14 +254,10 @@ def test_two_threads_do_not_meet(root):
 
 def test_no_symmetry_where_the_start_is_off_the_diagonal():
     """A starting point of one's own (from a backup) may lie anywhere; then nothing is skipped."""
-    from converse.prover.native import Search, Settings, Stop, Task
-    from converse.prover.tree import ROOT
-    from converse.prover.tree_search import MANY
+    from converse.prover.native import Settings, Task, grow
 
     for xstar, skips in ((("0.82", "0.82"), True), (("0.82", "0.83"), False)):
-        search = Search(Task(line("0.0275"), Settings("thesis", digits=20), xstar))
-        assert search.prepare(Stop())
-        counts = search.grow([(*ROOT, 0)], math.inf, MANY, Stop(), False).counts
+        counts = grow(Task(line("0.0275"), Settings("thesis", digits=20), xstar)).counts
         assert counts.proved > 0 and (counts.symmetric > 0) == skips
 
 
@@ -272,7 +267,7 @@ def core_search(xstar=None, depth=30, **settings):
     from converse.prover.native import Search, Settings, Task
 
     search = Search(Task(line("0.0275"), Settings("thesis", depth=depth, **settings), xstar))
-    assert search.prepare(None)
+    assert search.work(0, bool)
     return search
 
 
@@ -281,21 +276,19 @@ def test_a_tree_that_is_taken_up(root):
     from converse.prover.native import WrongTree, ffi, lib
 
     search = core_search()
-    handle, step = search.handle, lambda: lib.cv_step(search.handle, 100, 1e300, 1.0, ffi.NULL)
-    for text, status, pending in (("P", lib.CV_OK, 0), ("0PU", lib.CV_OK, 0),
-                                  ("0SP", lib.CV_OK, -1),
-                                  ("0P", lib.CV_OK, 1), ("0??", lib.CV_OK, 2), ("PP", -3, -1),
-                                  ("2PP", -3, -1), ("x", -3, -1), ("0P\0", -3, -1)):
-        found = lib.cv_resume(handle, text.encode(), len(text))
+    handle = search.handle
+    for text, pending in (("P", 0), ("0PU", 0), ("0aP", 0), ("0SP", -1), ("0P", 1), ("0??", 2),
+                          ("PP", -1), ("2PP", -1), ("X", -1), ("0P\0", -1)):
+        found = lib.cv_resume(handle, text.encode(), len(text), ffi.NULL, 0)
+        assert found == (lib.CV_EARGUMENT if pending < 0 else lib.CV_OK)
+        assert lib.cv_pending(handle, ffi.NULL) == max(0, pending)
         if pending < 0:
-            assert found == lib.CV_EARGUMENT and step() == lib.CV_EARGUMENT
-            assert lib.cv_pending(handle, ffi.NULL) == 0
+            assert lib.cv_start(handle, 1, 100, math.inf) == lib.CV_EARGUMENT
         else:
-            assert (found, lib.cv_pending(handle, ffi.NULL)) == (status, pending)
-            assert step() in (lib.CV_OK, lib.CV_RUNNING)
+            search.work(1, bool, 100)
     for text in "0P\u00e9", "0P?\U0001d7d8":
         with pytest.raises(WrongTree):
-            search.begin(text)
+            search.resume(text, [])
 
 
 @pytest.mark.parametrize("xstar, good", [(("0.82", "0.82"), True), (("0.82", "0.83"), False)])
@@ -304,7 +297,7 @@ def test_what_was_skipped_must_be_symmetric(xstar, good):
 
     search = core_search(xstar)
     with contextlib.nullcontext() if good else pytest.raises(WrongTree):
-        assert search.begin("01?S?").counts.symmetric == 1
+        search.resume("01?S?", [])
 
 
 def test_the_finest_index():
@@ -312,47 +305,41 @@ def test_the_finest_index():
     search = core_search(depth=1000, digits=60, stubborn=True)
     for cuts, text in ((60, "0"), (61, "U")):
         cell = ((2 ** cuts // 3, 2 ** cuts // 5, 0, 0, 0), (cuts, cuts, 0, 0, 0), 0)
-        grown = search.grow([cell], math.inf, 1, None, False)
+        grown = search.grow([cell], 1)
         assert grown.text.startswith(text) or grown.text == "P"
         assert all(max(cuts) <= 61 for _, cuts, _ in grown.cells)
 
 
-def test_stopped_in_the_middle_of_a_prism():
-    """The prism at hand is forgotten, with its statistics; then the search goes on as if nothing
-    had been."""
-    from converse.prover.native import Stop
-    from converse.prover.tree import ROOT as WHOLE
+@pytest.mark.parametrize("threads", [1, 3])
+def test_stopped_in_the_middle_of_a_prism(threads):
+    """The prisms at hand are forgotten, with their statistics; then the search goes on as if
+    nothing had been."""
+    from converse.prover.native import check, lib
 
     for digits in 3000, 12000, 48000, 192000:       # where the stop is late a prism takes longer
-        search, cells, text, counts, stops = core_search(digits=digits), [(*WHOLE, 0)], "", [], 0
-        whole = core_search(digits=digits).grow(cells, math.inf, 12, None, False)
-        delay = 0.002
-        while len(text) < len(whole.text):
-            token = Stop()
-            timer = threading.Timer(delay, token.set)
-            timer.start()
-            grown = search.grow(cells, math.inf, 12 - sum(map(text.count, "PSU")), token, False)
-            timer.cancel()
-            stops += not grown.text
-            delay *= 1.1
-            text, cells = text + grown.text, grown.cells
-            counts.append(grown.counts)
-        assert text == whole.text
-        assert sum(c.quick_tries for c in counts) == whole.counts.quick_tries
+        search, seen, stops, delay = core_search(digits=digits), "", 0, 0.002
+        whole = core_search(digits=digits).grow(leaves=12)
+        while sum(map(seen.count, "PSU")) < 12:
+            check(lib.cv_start(search.handle, threads, 12 - sum(map(seen.count, "PSU")), math.inf))
+            lib.cv_wait(search.handle, delay)
+            lib.cv_halt(search.handle)
+            text = search.view(0).text.rstrip("?")
+            assert text.startswith(seen)
+            stops += text == seen
+            seen, delay = text, 1.1 * delay
+        assert (seen, search.view().counts) == (whole.text, whole.counts)
         if stops > 0:
             break
     assert stops > 0
 
 
 def test_a_search_whose_setting_up_was_stopped_is_good_for_nothing():
-    from converse.prover.native import Search, Settings, Stop, Task, ffi, lib
+    from converse.prover.native import Search, Settings, Task, ffi, lib
 
-    search = Search(Task(line("0.0275"), Settings("thesis", digits=20000)))
-    token = Stop()
-    token.set()
-    assert not search.prepare(token)
+    search = Search(Task(line("0.0275"), Settings("thesis", digits=100000)))
+    assert not search.work(0, lambda: True)
     assert lib.cv_restart(search.handle, 0, ffi.NULL) == lib.CV_EARGUMENT
-    assert lib.cv_prepare(search.handle, ffi.NULL) == lib.CV_EARGUMENT
+    assert lib.cv_start(search.handle, 1, 1, 1.0) == lib.CV_EARGUMENT
 
 
 @pytest.mark.slow

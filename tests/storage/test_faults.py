@@ -19,6 +19,7 @@ from pathlib import Path
 import pytest
 
 from converse import Proof
+from converse.prover.portrait import Portrait
 from converse.storage import backup as keeping
 from converse.storage import files
 
@@ -27,9 +28,9 @@ from truth import STRIKE, TORTURE
 
 # The backup is written
 ALWAYS = """
-from converse.prover import run
+from converse.prover import native
 from converse.storage import backup
-run.LOOK_SECONDS = backup.SECONDS = backup.SHARE = 0
+native.LOOK_SECONDS = backup.SECONDS = backup.SHARE = 0
 """
 RARELY = """
 from converse.storage import backup
@@ -131,66 +132,69 @@ def test_interrupt(held, command, sample, output, tmp_path, number):
     assert (status, timeless(out).split("Restored")[0]) == (0, output)
 
 
-def test_struck_inside_the_locks_of_a_pool(sample, tmp_path):
+@pytest.fixture
+def struck(root, tmp_path):
+    """Strikes a portrait, which a pool of threads finds, where some code says; it can be
+    continued."""
+    def struck(code, number):
+        path = tmp_path / "a.portrait"
+        process = subprocess.run(
+            [sys.executable, "-c", STRIKE + code + """
+from converse.commands.portrait import main
+sys.exit(main())
+""", "--jobs", "1", "--columns", "12", "--depth", "7", "-b", path,
+             root / "inputs" / "standard-k090.in"],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
+        assert process.returncode == 128 + number, process.stderr
+        assert process.stderr == "converse-portrait: interrupted; continue with -r %s\n" % path
+        half = Portrait.load(path)
+        assert len(half.found) < len(half.stars)
+    return struck
+
+
+@pytest.mark.parametrize("seen", [0, 1, 3])
+def test_struck_inside_the_locks_of_a_pool(struck, seen):
     """A RuntimeError of the library is no traceback, and loses nothing."""
-    backup, code = tmp_path / "backup", STRIKE + """
-import converse.prover.run
-looked = converse.prover.run._Run._look
-def look(self):
-    looked(self)
-    sys.setprofile(strike)
-converse.prover.run._Run._look = look
-""" + HELD
-    process = subprocess.run([sys.executable, "-c", code, tmp_path / "sign", "0", "-b", backup,
-                              sample],
-                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                             timeout=PATIENCE)
-    assert process.returncode == 143, process.stderr
-    assert process.stderr == "converse: interrupted; continue with -r %s\n" % backup
-    assert not Proof.load(backup).no_tori
+    struck("""
+from converse.prover import workers
+took, seen = workers.WorkerPool._take, []
+def take(self):
+    seen.append(self)
+    if len(seen) > %d:
+        sys.setprofile(strike)
+    return took(self)
+workers.WorkerPool._take = take
+""" % seen, signal.SIGTERM)
 
 
-def test_struck_with_the_lock_of_a_future(held, sample, tmp_path):
+def test_struck_with_the_lock_of_a_future(struck):
     """The lock is released; else the worker would wait for it, and the program for the worker."""
-    backup, code = tmp_path / "backup", """
-import os, signal, sys, threading
+    struck("""
 def strike(frame, event, arg):
     if event == "c_return" and type(frame.f_locals.get("self")).__name__ == "_AcquireFutures" and \\
             frame.f_code.co_name == "__enter__":
         sys.setprofile(None)
         os.kill(os.getpid(), signal.SIGINT)
-import converse.prover.run
-looked = converse.prover.run._Run._look
-def look(self):
-    looked(self)
-    if self.search.pool.running:
+from converse.prover import workers
+took = workers.WorkerPool._take
+def take(self):
+    if self.running:
         sys.setprofile(strike)
-converse.prover.run._Run._look = look
-"""
-    with held("-b", backup, sample, before=code) as (process, _):
-        err = ended(process)
-    assert process.returncode == 130, err
-    assert err == "converse: interrupted; continue with -r %s\n" % backup
-    assert Proof.load(backup).tree
+    return took(self)
+workers.WorkerPool._take = take
+""", signal.SIGINT)
 
 
-def test_struck_while_a_thread_is_begun(sample):
+def test_struck_while_a_thread_is_begun(struck):
     """That is no lack of memory."""
-    code = STRIKE.replace("if not frame:", "if frame:") + """
-from converse.commands.prove import main
+    struck(STRIKE.replace("if not frame:", "if frame:") + """
 from converse.prover import workers
 start = workers.WorkerPool._submit
 def start_and_be_struck(*arguments):
     sys.setprofile(strike)
     return start(*arguments)
 workers.WorkerPool._submit = start_and_be_struck
-sys.exit(main())
-"""
-    process = subprocess.run([sys.executable, "-c", code, "--jobs", "1", sample],
-                             stdout=subprocess.DEVNULL,
-                             stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
-    assert process.returncode == 143, process.stderr
-    assert process.stderr.startswith("converse: interrupted") and process.stderr.count("\n") == 1
+""", signal.SIGTERM)
 
 
 def test_interrupt_without_backup(held, sample):
