@@ -149,14 +149,18 @@ FAILING = r"""
 #include <dlfcn.h>
 #include <stdatomic.h>
 #include <stdlib.h>
-static atomic_long left = -1;           /* allocations of all threads until all fail; -1: never */
+#include <unistd.h>
+/* Allocations until all fail, of the first thread and of all others; -1: never. */
+static atomic_long left[2] = { -1, -1 };
 static atomic_int failed;
-void fail_after(long n) { failed = 0; left = n; }
-int has_failed(void) { left = -1; return failed; }
+void fail_after(long n, long others) { failed = 0; left[0] = n; left[1] = others; }
+long left_here(void) { const long n = left[0]; left[0] = -1; return n; }
+int has_failed(void) { left[0] = left[1] = -1; return failed; }
 static int fails(void)
 {
-    long now = left;
-    while (now > 0 && !atomic_compare_exchange_weak(&left, &now, now - 1)) continue;
+    atomic_long *const mine = &left[gettid() != getpid()];
+    long now = *mine;
+    while (now > 0 && !atomic_compare_exchange_weak(mine, &now, now - 1)) continue;
     if (now == 0) failed = 1;
     return now == 0;
 }
@@ -173,7 +177,8 @@ import converse
 from converse.prover.native import native_problem
 from converse._native import ffi, lib
 shim = ctypes.CDLL(None)
-shim.fail_after.argtypes = [ctypes.c_long]
+shim.fail_after.argtypes = [ctypes.c_long] * 2
+shim.left_here.restype = ctypes.c_long
 keep = []
 problems = [native_problem(converse.Problem.around(
     tuple(map(Fraction, ("0.311", "0.311", "0.622", "1", "1"))),
@@ -181,9 +186,12 @@ problems = [native_problem(converse.Problem.around(
     for together in (False, True)]
 handle = ffi.new("cv_search **")
 assert lib.cv_search_new(handle, problems[0], ffi.NULL, 0, 0, 30, 0, 0, 0) == lib.CV_EARGUMENT
-def new(dp=35, method=0, depth=30):
+def new(n=-1, dp=35, method=0, depth=30):
+    shim.fail_after(n, -1)                  # of Python's own allocations none may fail
     code = lib.cv_search_new(handle, problems[method], ffi.NULL, method, dp, depth, 0, 0, 0)
+    here = shim.left_here()
     if code == 0:
+        shim.fail_after(-1, here)
         code = grow(0)
         if code:
             lib.cv_search_free(handle[0])
@@ -206,8 +214,7 @@ def look():
     return text.rstrip(b"?"), view.counts
 seen = {"new": 0, "step": 0, "loewner": 0}
 for n in list(range(0, 3000, 29)) + list(range(3000, 60000, 2999)):
-    shim.fail_after(n)
-    code = new()
+    code = new(n)
     failed = shim.has_failed()
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
     assert (handle[0] == ffi.NULL) == bool(failed)
@@ -220,7 +227,7 @@ whole, _ = look()
 lib.cv_search_free(handle[0])
 for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
     assert new() == 0
-    shim.fail_after(n)
+    shim.fail_after(-1, n)
     code = step()
     failed = shim.has_failed()
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
@@ -234,8 +241,7 @@ def pages():
     return int(open("/proc/self/statm").read().split()[0])
 before = pages()
 for n in range(0, 700):                      # the sharper method: making it, then a step
-    shim.fail_after(n)
-    code = new(method=1, depth=60)
+    code = new(n, method=1, depth=60)
     if code == 0:
         code = step()
     failed = shim.has_failed()
