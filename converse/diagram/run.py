@@ -12,7 +12,7 @@ from ..storage.backup import Backup
 from ..storage.files import ConverseError, Path
 from ..storage.signals import interruptible
 from ..version import __version__
-from . import cells
+from . import cells, line
 from .sides import sides_of
 from .value import Diagram
 
@@ -80,8 +80,8 @@ def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = No
             diagram.sides = sides_of(diagram.family)
         with Filling(diagram, backup, WorkerPool(executor, jobs), deadline,
                      lambda: progress and progress(diagram)) as filling:
-            cells.search(diagram, filling, int(seconds * POINTS_A_SECOND),
-                         tell or (lambda text: None))
+            search = line.search if len(diagram.ranges) == 1 else cells.search
+            search(diagram, filling, int(seconds * POINTS_A_SECOND), tell or (lambda text: None))
     return diagram
 
 

@@ -1,0 +1,177 @@
+"""The search along one parameter: what is tried next.
+
+Rounds that look for tori (some.py) and rounds that exclude them (none.py) change off: the side that
+has cost less is next.  A cell of the line that is not excluded is halved.  If its middle was
+excluded, only x* has to change; if not, there may be a torus, and with each halving the tries may
+cost twice the points.  The tasks of a round are chosen before any of them is done, so the result
+does not depend on how many are done at a time.
+"""
+
+from fractions import Fraction
+from typing import Any, Dict, List, NamedTuple, Tuple
+
+from . import none, some
+from .value import Diagram
+
+CELLS = 24                              # of the range, at first
+FINEST = 1 << 14                        # A cell with a torus is left out if so many fill the range.
+ROUND = 8                               # cells of a round
+FIRST_POINTS, WHOLE_POINTS = 20000, 1 << 17     # of orbits: of the first try at the middle of a cell
+DOUBT = Fraction(1, 2)                  # the weight of a cell whose middle was not excluded
+SEEN = 16                               # A cell in which a torus is seen is so much less urgent.
+Hint = Tuple[Fraction, none.Point]      # a value, and the x* over which it is excluded
+
+
+class Cell(NamedTuple):
+    """A part of the line that is to be proved.
+
+    Attributes
+    ----------
+    low, high
+        The ends.
+    points
+        Of the next try at its middle.
+    weight
+        Its width counts so much; 0 for the whole range, which is tried first.
+    """
+
+    low: Fraction
+    high: Fraction
+    points: int
+    weight: Fraction
+
+    @property
+    def middle(self) -> Fraction:
+        return (self.low + self.high) / 2
+
+    def halves(self, doubtful: bool) -> "List[Cell]":
+        """Its halves, and what is to be done for them."""
+        points, weight = (2 * self.points, DOUBT) if doubtful else (self.points, Fraction(1))
+        return [Cell(low, high, points, weight) for low, high
+                in ((self.low, self.middle), (self.middle, self.high))]
+
+
+def search(diagram: Diagram, filling, points: int, tell) -> None:
+    """Adds proofs to a diagram of one parameter.
+
+    Parameters
+    ----------
+    diagram
+        The diagram; its `search` has the cells and the x* that are known.
+    filling : prover.workers.Filling
+        Its workers do the tasks.
+    points
+        The search ends with the round in which the diagram has so many points.
+    tell
+        tell(text) is called with a line about each proof, as soon as it is found.
+    """
+    line = _Line(diagram)
+    while diagram.points < points and not filling.late:
+        tasks, results = line.round(), {}       # type: List[Any], Dict[int, Any]
+        if not tasks:
+            break
+
+        def take(key, outcome):
+            results[key] = outcome
+            found = outcome and (outcome.torus if isinstance(outcome, some.Outcome) else
+                                 outcome.proof)
+            if found:
+                tell(diagram.sentence(diagram.add(found)))
+
+        queue = iter([(key, *line.call(task)) for key, task in enumerate(tasks)])
+        try:
+            filling.work(lambda: next(queue, None), take)
+        finally:                        # also of a round that is broken off
+            for key, task in enumerate(tasks):
+                line.take(task, results.get(key))
+            diagram.search = line.lines()
+
+
+class _Line:
+    """The state of the search: cells, x* that exclude a value, and the runs of tori."""
+
+    def __init__(self, diagram):
+        self.diagram = diagram
+        self.grain = (diagram.ranges[0][1] - diagram.ranges[0][0]) / FINEST
+        self.cells: List[Cell] = []
+        self.hints: List[Hint] = []
+        self.spent = [0, 0]             # points, by the cells and by the runs
+        known: Dict[str, List[List[str]]] = {"cell": [], "hint": [], "spent": [], "run": []}
+        for line in diagram.search:
+            kind, *words = line.split()
+            known.get(kind, known["run"]).append([kind, *words] if kind not in known else words)
+        for low, high, points, weight in known["cell"]:
+            self.cells.append(Cell(Fraction(low), Fraction(high), int(points), Fraction(weight)))
+        self.hints = [(Fraction(value), (x0, x1)) for value, x0, x1 in known["hint"]]
+        self.spent = [int(x) for words in known["spent"] for x in words] or [0, 0]
+        self.tori = some.Runs(diagram, known["run"])
+        if not diagram.search and diagram.open:
+            self.cells = [Cell(diagram.open[0][0], diagram.open[-1][1],
+                               WHOLE_POINTS, Fraction(0))]
+
+    def lines(self) -> List[str]:
+        """The state, for the file."""
+        return ["spent %d %d" % tuple(self.spent)] + [
+            "cell %s %s %d %s" % cell for cell in self.cells] + [
+            "hint %s %s %s" % (value, *xstar) for value, xstar in self.hints] + self.tori.lines()
+
+    def round(self) -> List[Any]:
+        """The tasks that are done next."""
+        first, second = (self.tori.round, self._cells) if self.spent[1] < self.spent[0] else (
+            self._cells, self.tori.round)
+        return first() or second()
+
+    def call(self, task) -> Tuple[Any, ...]:
+        """The function that does a task, and its arguments."""
+        if isinstance(task, some.Task):
+            return some.attempt, self.diagram.over(((task.value, task.value),)), task
+        over, middle = (self.diagram.over((ends,)) for ends in (
+            (task.low, task.high), (task.middle, task.middle)))
+        return none.exclude, over, middle, self._near(task), task.points
+
+    def take(self, task, outcome) -> None:
+        """Records what became of a task; None: it was not done."""
+        if outcome is not None:
+            self.spent[isinstance(task, some.Task)] += outcome.points
+        if isinstance(task, some.Task):
+            self.tori.take(task, outcome)
+        elif outcome is None:
+            self.cells.append(task)
+        else:
+            self.diagram.points += outcome.points
+            if outcome.xstar:
+                self.hints.append((task.middle, outcome.xstar))
+            if not outcome.proof:
+                self.cells += task.halves(outcome.xstar is None) if task.weight else \
+                    self._divided(task)
+
+    def _cells(self):
+        """The cells that are tried next, the widest first; tori that are seen make a cell as narrow
+        as a sixteenth of it."""
+        def rank(cell):
+            seen = self.tori.seen_in(cell.low, cell.high)
+            return (cell.low - cell.high) * cell.weight / (SEEN if seen else 1), cell.low
+
+        tori = [(each.low, each.high) for each in self.diagram.tori]
+        todo, chosen = sorted(self.cells, key=rank), []     # type: List[Cell], List[Cell]
+        while todo and len(chosen) < ROUND:
+            cell = todo.pop(0)
+            inside = [ends for ends in tori if ends[0] <= cell.high and cell.low <= ends[1]]
+            if not inside:
+                chosen.append(cell)
+            elif not any(low <= cell.low and cell.high <= high for low, high in inside):
+                todo += cell.halves(False) if cell.high - cell.low > self.grain else ()
+                todo.sort(key=rank)
+        self.cells = todo
+        return chosen
+
+    def _divided(self, cell):
+        """The parts of the whole range, with ends of few decimals."""
+        ends = [cell.low, *(some.nice(cell.low + (cell.high - cell.low) * i / CELLS, self.grain)
+                            for i in range(1, CELLS)), cell.high]
+        return [Cell(*pair, FIRST_POINTS, Fraction(1)) for pair in zip(ends, ends[1:])]
+
+    def _near(self, cell):
+        """The x* over which the nearest values are excluded."""
+        nearest = sorted(self.hints, key=lambda hint: abs(hint[0] - cell.middle))
+        return list(dict.fromkeys(xstar for _, xstar in nearest))[:none.HINTS]

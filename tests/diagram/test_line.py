@@ -1,0 +1,96 @@
+"""The search along one parameter: the x* of a cell, the values with tori, and the order of work."""
+
+from fractions import Fraction as F
+
+import pytest
+
+from converse import FourierMap, diagram
+from converse.diagram import Diagram, line, none, some
+from converse.diagram.value import Existence
+
+
+def cosines(**ranges):
+    """V = K1 cos y + 0.2 cos 2y, whose circles come back twice as K1 grows."""
+    return FourierMap({(1, "-1/2"): {"K1": 1}, (2, "+cos"): "0.2"}, **ranges)
+
+
+def excluded(low, high, hints=(), points=20000):
+    return none.exclude(cosines(K1=(low, high)), cosines(K1=(F(low) + F(high)) / 2), list(hints),
+                        points)
+
+
+# ---- x*
+
+def test_x_is_chosen_by_what_it_leaves():
+    found = excluded("1.4", "1.5")
+    assert found.proof.no_tori
+    again = excluded("1.4", "1.5", [found.xstar])
+    assert again.proof.no_tori and again.xstar == found.xstar
+    assert 4 * again.points < found.points              # without the scan
+
+
+def test_the_choice_of_x_is_the_same_each_time():
+    assert excluded("0.3", "0.301")[::2] == excluded("0.3", "0.301")[::2]
+
+
+@pytest.mark.slow
+def test_no_x_excludes_a_circle():
+    assert excluded("0.42", "0.42")[1:] == (None, None)         # a circle is proved there
+
+
+@pytest.mark.slow
+def test_two_angles_have_an_x_far_from_the_first_choice():
+    family = FourierMap({(1, 0, "-1/2"): {"K": 1}, (0, 1, "+cos"): {"K": 1},
+                         ((1, 1), "+cos"): "0.1"}, K=("0.9", "0.92"))
+    assert none.exclude(family, family.at(K="0.91"), [], 10 ** 6).proof.no_tori
+
+
+# ---- values with tori
+
+def runs_of(looks):
+    runs = some.Runs(Diagram.of(cosines(K1=(0, 1))), [])
+    runs.looks = {F(value): (seen,) if seen else None for value, seen in looks.items()}
+    return runs
+
+
+def test_values_that_are_seen_next_to_each_other_are_a_run():
+    runs = runs_of({"0": .2, "0.1": .2, "0.2": None, "0.3": .25, "0.4": None})
+    assert runs.runs() == [[0, F("0.1")], [F("0.3")]]
+
+
+def test_a_torus_is_first_proved_in_the_middle_of_a_run():
+    runs = runs_of({"0.1": None, "0.2": .2, "0.3": .2, "0.4": .2, "0.5": None})
+    assert runs._proofs() == [some.Task(F("0.3"), runs.sizes[0])]
+    runs.tried[F("0.3")] = runs.sizes[0]
+    assert runs._proofs() == [some.Task(F("0.3"), runs.sizes[1])]
+
+
+def test_values_have_few_decimals():
+    assert some.nice(F(1, 3), F(1, 100)) == F("0.33")
+    assert some.nice(F(0), F(1, 100)) == 0 and some.nice(F("0.5"), F(1, 10)) == F("0.5")
+
+
+# ---- the whole
+
+@pytest.mark.slow
+def test_there_are_circles_above_values_without_circles(tmp_path):
+    """Some 15 CPU seconds."""
+    found = diagram.explore(cosines(K1=("0.31", "0.45")), path=tmp_path / "two.map", budget=12,
+                            jobs=1)
+    inside = [ends for ends in found.none if ends[0] <= F("0.315") <= ends[1]]
+    assert inside and any(each.low > inside[0][1] for each in found.tori)
+    assert found.verify()
+
+
+@pytest.mark.slow
+def test_a_diagram_does_not_depend_on_the_workers(tmp_path):
+    first, second = (diagram.explore(cosines(K1=("0.28", "0.7")), path=tmp_path / name, budget=2,
+                                     jobs=jobs) for name, jobs in (("1.map", 1), ("2.map", 2)))
+    assert (first.members, first.search) == (second.members, second.search)
+
+
+def test_a_cell_with_a_torus_is_halved_and_not_tried(monkeypatch):
+    work = line._Line(Diagram.of(cosines(K1=("0.3", "0.5"))))
+    monkeypatch.setattr(Diagram, "tori", [Existence(F("0.4"), F("0.4"), None, "")])
+    chosen = work._cells()
+    assert chosen and not any(cell.low <= F("0.4") <= cell.high for cell in chosen)
