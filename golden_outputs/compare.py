@@ -20,7 +20,7 @@ CONVERSE = Path(sys.executable).parent / "converse"
 CHECKER = CONVERSE.with_name("converse-check")
 MODES = {"as_printed": ["-d30", "--as-printed"], "sound": ["-d30"]}
 LOEWNER = "for --method loewner"        # a comment of the inputs that it is for
-TORI = "for converse-tori"              # and of those with tori, which are not run here
+OTHERS = "for converse-tori", "for converse-map"        # and of those that are not run here
 
 SECONDS = re.compile(r"This investigation took [0-9.]+ seconds\.|^Time +[0-9.]+ s$", re.MULTILINE)
 
@@ -54,10 +54,10 @@ def as_thesis(thesis):
 
 def modes(problem):
     """The modes of an input, each with its flags."""
+    if any(comment in problem.read_text("utf-8") for comment in OTHERS):
+        return {}
     if problem.suffix == ".json":
         return {"loewner": ["--method", "loewner"]}
-    if TORI in problem.read_text("utf-8"):
-        return {}
     flags = [line.split()[1:] for line in problem.read_text("utf-8").splitlines()
              if line.startswith(LOEWNER)]
     return {"loewner": flags[0]} if flags else MODES

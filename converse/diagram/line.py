@@ -16,7 +16,7 @@ from .value import Diagram
 CELLS = 24                              # of the range, at first
 FINEST = 1 << 14                        # A cell with a torus is left out if so many fill the range.
 ROUND = 8                               # cells of a round
-FIRST_POINTS, WHOLE_POINTS = 20000, 1 << 17     # of orbits: of the first try at the middle of a cell
+FIRST_POINTS, WHOLE_POINTS = 20000, 1 << 17     # of the first try at a cell; at the whole range
 DOUBT = Fraction(1, 2)                  # the weight of a cell whose middle was not excluded
 SEEN = 16                               # A cell in which a torus is seen is so much less urgent.
 Hint = Tuple[Fraction, none.Point]      # a value, and the x* over which it is excluded

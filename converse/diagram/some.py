@@ -107,10 +107,11 @@ class Runs:
         self.diagram.points += outcome.points
         if not task.points:
             self.looks[task.value] = outcome.rotation
-            self.diagram.seen = [Seen((value,), seen) for value, seen in sorted(
-                self.looks.items()) if seen]
         elif outcome.torus is None:
             self.tried[task.value] = task.points
+        proved = {each.low for each in self.diagram.tori}
+        self.diagram.seen = [Seen((value,), seen) for value, seen in sorted(self.looks.items())
+                             if seen and value not in proved]
 
     def seen_in(self, low: Fraction, high: Fraction) -> bool:
         """Is a torus seen in this part of the line?"""

@@ -81,7 +81,7 @@ class Dynamics:
             Angles before momenta, that is, [[1 - eps V'', 1], [-eps V'', 1]].
         """
         n, y = self.dimension, self._points(y, 0.0, eps)[0]
-        shape = y.shape if n == 1 else y.shape[:-1]
+        shape = y.shape[:-1] if y.shape[-1:] == (n,) else y.shape
         bend = eps * self._hessian(y.reshape(-1, n))
         return jacobians(bend).reshape(*shape, 2 * n, 2 * n)
 

@@ -240,17 +240,18 @@ def test_bad_usage(run, arguments, word):
     (GOOD.replace(b"0.617", b"nan"), 3), (GOOD.replace(b"0.0025", b"inf"), 3),
     (GOOD.replace(b"0.617", b"1e400"), 3), (GOOD.replace(b"0.0025", b"-0.0025"), 3),
     (GOOD.replace(b"0.617", b"0.617 1"), 3), (GOOD.replace(b" 0.0025", b""), 3),
-    (bytes(range(256)), 1), (b"\0" * 100, 1),
+    (bytes(range(256)), None), (b"\0" * 100, None),      # not text: no line is named
 ])
 def test_bad_input(run, text, line, tmp_path):
     status, out, err = run("-b", tmp_path / "b", "-g", tmp_path / "g.ps", stdin=text)
     assert status == 2 and out == ""
-    assert one_line(err) and ": <stdin>, line %d: " % line in err and "; " in err
+    where = "%s, line {}: ".format(line) if line else "%s: is not text in UTF-8"
+    assert one_line(err) and where % ": <stdin>" in err and "; " in err
     assert list(tmp_path.iterdir()) == []
     path = tmp_path / "bad.in"
     path.write_bytes(text)
     status, out, err = run(path)
-    assert status == 2 and one_line(err) and "%s, line %d: " % (path, line) in err
+    assert status == 2 and one_line(err) and where % path in err
 
 
 @pytest.mark.parametrize("text", [
