@@ -14,6 +14,7 @@ from ..model.problem import Problem
 from ..storage.files import ConverseError
 from ..version import __version__
 from .settings import Settings
+from .workers import LOOK_SECONDS
 
 
 def _without_core(error):
@@ -70,7 +71,6 @@ def check(code):
 
 
 TOO_LONG = lib.CV_REASON_TOO_LONG       # index of Counts.reasons
-LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 MANY = 2 ** 30                      # No search has as many leaves.
 NO_NODE = 2 ** 31                   # The number of no node, for cv_look.
 OLD = -1                            # The orbit's length of a node that was taken up.

@@ -16,9 +16,9 @@ from typing import Any, Callable
 from ..storage.files import ConverseError
 from ..storage.signals import Resource, postponed
 from ..version import __version__
-from .native import LOOK_SECONDS
 from .settings import whole_number
 
+LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 ATTEMPTS = 4                        # at a task whose workers die
 ASK_SECONDS = 1.0                   # between two questions to a Dask scheduler
 # Evaluated by a Dask worker, on which the package may be missing.

@@ -742,7 +742,7 @@ def test_nothing_of_the_file_is_echoed(texts, run, tmp_path, capsys):
         status, out, err = run(sealed(changed))
         for output in (out, err):
             assert output.replace("\n", "").isprintable() and "Verified :" not in output[10:]
-        assert out.count("\n") <= 16 and err.count("\n") == (status != 0)
+        assert out.count("\n") <= 18 and err.count("\n") == (status != 0)
     path = tmp_path / (evil.replace("/", "") + "\udcff")
     path.write_text(text, encoding="utf-8")
     for arguments in ([str(tmp_path / "missing") + evil], [str(path), "--jobs", evil],

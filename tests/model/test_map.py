@@ -184,7 +184,7 @@ def test_what_is_typed_first():
     assert converse.prove(StandardMap("0.99")).no_tori
     with pytest.raises(TypeError, match="the map is a SymplecticMap, .* not orbits.standard"):
         converse.tori.find(converse.orbits.standard, "golden")
-    with pytest.raises(TypeError, match="is given as a text such as"):
+    with pytest.raises(TypeError, match="is a Rotation, or a text such as"):
         converse.tori.find(m, 0.618)
 
 
