@@ -186,7 +186,7 @@ def test_a_potential_in_a_file(run, root, tmp_path):
     status, out, err = run("find", root / "inputs" / "trig278.in", "5,7/9", "1", "--at", "a=0.1",
                            "--at", "b=1/7", "--at", "c=-0.2")
     assert (status, err) == (0, "") and (
-        "V(y) : -1/10 sin(y0) - 1/7 sin(y1) + 1/5 sin(y0 + y1)\n" in out)
+        "V(y) : -0.1 sin(y0) - 1/7 sin(y1) + 0.2 sin(y0 + y1)\n" in out)
 
 
 @pytest.mark.parametrize("text", ["1 0 0 -1/2\n0 1 0 -0.5\n", "2 0.25 -1\n"])

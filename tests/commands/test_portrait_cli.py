@@ -77,7 +77,8 @@ def test_bad_usage_is_one_line(run, inputs, tmp_path, monkeypatch, name, argumen
 
 def test_without_a_file_the_report_tells_how_to_get_one(run, inputs):
     out = run(inputs["standard"], "--columns", 30, "--depth", 4)[1]
-    assert "\nVerify : with -b FILE the run keeps the portrait; converse-check FILE verifies it\n" in out
+    assert "\nVerify : with -b FILE the run keeps the portrait; converse-check FILE verifies it\n" \
+        in out
 
 
 def test_depth_that_proves_nothing_is_told(run, inputs):

@@ -84,7 +84,7 @@ def test_a_theorem_with_choices(run, tmp_path):
                            "--points", 4096)
     assert (status, err) == (0, "")
     assert "  has an invariant torus with the rotation vector omega = (" in out
-    assert re.search(r"\|k\| = (\d+ )?\|k\[0\] \+ k\[1\]\| \+ (\d+ )?\|k\[0\] - k\[1\]\|\n", out)
+    assert re.search(r"\|k\| = (\d+ )?\|[^|]*k\[0\][^|]*\| \+ (\d+ )?\|", out)     # a measured frame
 
 
 def test_a_theorem_for_a_negative_rotation_number(run, tmp_path):
@@ -118,7 +118,7 @@ def test_what_is_not_proved_is_said(run, tmp_path, monkeypatch):
     assert (status, err) == (1, "") and not file.exists()
     assert out.startswith("UNDECIDED: nothing is proved.  There may be no rotational")
     assert re.search("Not proved the error of the torus is [0-9.]+e-[0-9]+, where less than "
-                     "[0-9.]+e-[0-9]+ is needed ", flat(out)) and "THEOREM" not in out
+                     "[0-9.]+e-[0-9]+ is needed", flat(out)) and "THEOREM" not in out
 
 
 def test_too_little_memory_is_said(run):
