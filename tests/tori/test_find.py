@@ -198,7 +198,7 @@ def test_refinement_begins_with_what_is_below_the_noise(monkeypatch):
 
 @pytest.mark.slow
 def test_an_error_is_not_computed_anew_for_another_norm(monkeypatch):
-    """At k = 0.97 three strips are tried on one mesh; at 0.971 the second mesh is larger."""
+    """At k = 0.97 three strips are tried; at 0.971 the second mesh is larger."""
     errors, refined, calls = refinement.errors, sys.modules["converse.tori.find"].refined, []
 
     def counted(name, call):
@@ -206,10 +206,9 @@ def test_an_error_is_not_computed_anew_for_another_norm(monkeypatch):
 
     monkeypatch.setattr(refinement, "errors", counted("error", errors))
     monkeypatch.setattr(sys.modules["converse.tori.find"], "refined", counted("norm", refined))
-    for k, found in (("0.97", ["norm", "error", "norm", "norm", "error"]),
-                     ("0.971", ["norm", "error"] * 2)):
+    for k, most in ("0.97", 4), ("0.971", 2):       # six times, and three, if for each strip
         find(MuldoonMap(k, 0, 0), GOLDEN)
-        assert calls == found
+        assert calls.count("error") <= most
         calls.clear()
 
 
