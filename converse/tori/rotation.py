@@ -190,12 +190,11 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
         POLYNOMIAL: ELEMENT                     one angle; the polynomial quadratic in t
         POLYNOMIAL: ELEMENT, ELEMENT            two angles; the polynomial cubic in t
         POLYNOMIAL near 1.2: ...                the real root t that is nearest to 1.2
-        [0; 4, 1, 4, ...]                       a continued fraction.  The last quotient goes on if
-                                                it is there twice, else 1, 1, ... follows
+        [0; 4, 1, 4, ...]                       a continued fraction, which 1, 1, ... follows
 
     such as "t^3+t^2-2t-1: (-23+8t+11t^2)/13, (25-7t-8t^2)/13".  Without `near` t is the largest
     real root.  An element is a sum of terms such as 3/4 t^2, or a quotient of two sums in
-    parentheses.
+    parentheses.  The last quotient of a continued fraction goes on if it is there twice.
 
     Parameters
     ----------

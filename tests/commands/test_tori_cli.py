@@ -84,7 +84,7 @@ def test_a_theorem_with_choices(run, tmp_path):
                            "--points", 4096)
     assert (status, err) == (0, "")
     assert "  has an invariant torus with the rotation vector omega = (" in out
-    assert re.search(r"\|k\| = (\d+ )?\|[^|]*k\[0\][^|]*\| \+ (\d+ )?\|", out)     # a measured frame
+    assert re.search(r"\|k\| = (\d+ )?\|[^|]*k\[0\][^|]*\| \+ (\d+ )?\|", out)
 
 
 def test_a_theorem_for_a_negative_rotation_number(run, tmp_path):
