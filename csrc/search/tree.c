@@ -421,8 +421,10 @@ int cv_look(cv_search *s, size_t from, cv_view *view)
         if (view->tree == NULL || view->steps == NULL) {
             status = CV_ENOMEM;
         } else if (room > 0) {
-            memcpy(view->tree, s->tree + from, n);
-            memcpy(view->steps, s->steps + from, n * sizeof *view->steps);
+            if (n > 0) {                /* else there may be no arrays yet */
+                memcpy(view->tree, s->tree + from, n);
+                memcpy(view->steps, s->steps + from, n * sizeof *view->steps);
+            }
             view->length = n + write_rest(s, view->tree + n, view->steps + n);
         }
     }
