@@ -45,7 +45,7 @@ test: $(VENV)/with-test
 	$(VENV)/bin/pytest $(TWO) tests
 
 PYTHON_CODE = converse docs experiments formal golden_outputs setup.py tests
-C_CODE = $(wildcard csrc/*.h csrc/*/*.[ch] csrc/*/*.inc experiments/*/*.[ch] tests/kernels/*.[ch])
+C_CODE = $(wildcard csrc/*.h csrc/*/*.[ch] csrc/*/*.inc tests/kernels/*.[ch])
 
 # What pyproject.toml says of style, imports and types, and .clang-format of C.
 lint: $(VENV)/with-test
@@ -185,9 +185,9 @@ checker:
 	$(PYTHON) -m zipapp -c -p '/usr/bin/env python3' -o build/converse-check.pyz build/checker
 	@echo 'build/converse-check.pyz is the checker: python3 build/converse-check.pyz FILE'
 
-# Every translation unit that converse/_build.py lists, and the experiment's, with all warnings as errors.
+# Every translation unit that converse/_build.py lists, with all warnings as errors.
 warnings: $(VENV)/installed
-	for source in $(UNITS) experiments/least_action/minplus.c; do \
+	for source in $(UNITS); do \
 	    echo $$source; \
 	    gcc -std=c11 -O2 -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Werror -Icsrc \
 	        -c $$source -o /dev/null || exit 1; \

@@ -11,11 +11,8 @@ import sys
 import numpy as np
 import pytest
 import sweep
-from sums import fourier
 
 from converse import orbits
-from converse.model.potential import from_terms
-from converse.storage import files
 from converse.storage.files import ConverseError
 
 from moments import PATIENCE
@@ -88,25 +85,6 @@ def test_whoever_works_the_bytes_are_the_same(whole, path, kind, workers):
     assert seen == [(k, len(VECTORS)) for k in range(len(VECTORS) + 1)]
 
 
-def test_users_potentials_go_to_other_processes():
-    terms = {(1, 0): (0, -0.5), (0, 1): (0, -0.5), (1, 1): (0, -1)}
-    for potential, vectors in ((fourier(terms, "mine"), VECTORS[:2]),
-                               (orbits.potential.Fourier.of(from_terms(terms), "mine"),
-                                VECTORS[:2])):
-        with concurrent.futures.ProcessPoolExecutor(1) as executor:
-            there = sweep.sweep(potential, vectors, EPS, executor)
-        assert same(there, sweep.sweep(potential, vectors, EPS))
-        assert set(there["potential"]) == {"mine"}
-
-
-def test_a_dask_cluster():
-    distributed = pytest.importorskip("distributed")
-    with distributed.Client(processes=False, n_workers=1, threads_per_worker=2,
-                            dashboard_address=None) as client:
-        there = sweep.sweep(orbits.trig, VECTORS, EPS, client.get_executor())
-    assert same(there, sweep.sweep(orbits.trig, VECTORS, EPS))
-
-
 # ---- interrupted
 
 def test_torn_anywhere(whole, path):
@@ -145,23 +123,6 @@ def test_the_file_of_another_sweep_is_refused(whole, path, potential, vectors, e
     assert path.read_bytes() == whole
 
 
-def test_a_table_of_onsets_is_not_one_of_states(path):
-    sweep.onsets(orbits.standard, [((1,), 3), ((2,), 5)], file=path, width=0.001)
-    data = path.read_bytes()
-    with pytest.raises(ConverseError, match="columns"):
-        sweep.sweep(orbits.standard, [((1,), 3), ((2,), 5)], EPS, file=path)
-    assert path.read_bytes() == data
-
-
-@pytest.mark.parametrize("data", [
-    b"a letter\n", b"\0" * 100, b"\x89PNG\r\n\x1a\n", b"potential,q\n"])
-def test_what_is_no_sweep_is_refused(path, data):
-    path.write_bytes(data)
-    with pytest.raises(ConverseError, match="columns are others"):
-        sweep.sweep(orbits.trig, VECTORS, EPS, file=path)
-    assert path.read_bytes() == data
-
-
 @pytest.mark.parametrize("old, new", [(b"minimum,", b"minimum;"), (b",0.", b",zero."),
                                       (b"e-0", b"\xff-0")])
 def test_a_damaged_sweep_is_refused(whole, path, old, new):
@@ -170,15 +131,6 @@ def test_a_damaged_sweep_is_refused(whole, path, old, new):
     path.write_bytes(head + new + tail)
     with pytest.raises(ConverseError, match="it is damaged"):
         sweep.sweep(orbits.trig, VECTORS, EPS, file=path)
-
-
-def test_two_sweeps_do_not_write_one_file(path):
-    with files.Lock(path), pytest.raises(ConverseError, match="another run"):
-        sweep.sweep(orbits.trig, VECTORS, EPS, file=path)
-    assert not path.exists()
-    for place in (path.parent, path.parent / "none" / "table.csv", "/dev/full"):
-        with pytest.raises(ConverseError, match="%s'?:" % place):
-            sweep.sweep(orbits.trig, VECTORS, EPS, file=place)
 
 
 MANY = """
@@ -219,38 +171,6 @@ def test_the_command(path, capsys):
     assert read(path)["q"].tolist() == [21, 34, 55]
     assert sweep.main(["standard", str(path), "--random", "2", "--sizes", "5:9"]) == 2
     assert "not the beginning of this sweep" in capsys.readouterr().err
-
-
-# ---- what goes wrong
-
-def test_a_lost_branch_has_rows_without_numbers(path, monkeypatch):
-    follow = orbits.follow
-
-    def lose(potential, p, q, eps, progress):
-        if q == 5:
-            eps = eps[:1]
-        follow(potential, p, q, eps, progress)
-        if q == 5:
-            raise ConverseError("no orbit")
-
-    monkeypatch.setattr(orbits, "follow", lose)
-    table = sweep.sweep(orbits.trig, VECTORS, EPS, file=path)
-    assert [tuple(row) for row in np.argwhere(table["label"] == sweep.LOST)] == [(3,)]
-    assert table["eps"].tolist() == EPS * len(VECTORS) and np.isnan(table["action"][3])
-    assert same(read(path), table)
-    monkeypatch.setattr(orbits, "onset", lambda *_, **__: lose(orbits.trig, (1, 1), 5, EPS, None))
-    assert sweep.onsets(orbits.trig, [((1, 1), 5)])["label"].tolist() == [sweep.LOST]
-
-
-def test_what_goes_wrong_in_a_worker_comes_through(monkeypatch):
-    def broken(state, *arguments):
-        raise LookupError("mine")
-
-    monkeypatch.setattr(orbits.PeriodicOrbit, "relax", broken)
-    with concurrent.futures.ThreadPoolExecutor(1) as executor:
-        for workers in None, executor:
-            with pytest.raises(LookupError, match="mine"):
-                sweep.sweep(orbits.trig, VECTORS, EPS, workers)
 
 
 # ---- experiments/toughest.py
