@@ -70,7 +70,8 @@ def main(arguments):
     unknown = set(names) - {row["picture"] for row in table}
     if unknown:
         sys.exit("figures.py: %s has no row for %s" % (TABLE, ", ".join(sorted(unknown))))
-    if by_hand := [row["picture"] for row in table if row["picture"] in names and not row["command"]]:
+    by_hand = [row["picture"] for row in table if row["picture"] in names and not row["command"]]
+    if by_hand:
         sys.exit("figures.py: %s has no command that draws %s" % (TABLE, ", ".join(by_hand)))
     BUILD.mkdir(exist_ok=True)
     for row in table:
