@@ -12,7 +12,6 @@ from .limits import INTERRUPTED, PIPE_CLOSED, UNUSABLE, VERIFIED
 from .progress import complain, reason
 from .run import verify
 from .signals import interruptible
-from .state import is_shard
 from .version import __version__
 
 
@@ -25,14 +24,6 @@ def positive_int(text):
     if not re.fullmatch("[0-9]{1,9}", text, re.ASCII) or int(text) == 0:
         raise argparse.ArgumentTypeError("'%.40s' is not a whole number above 0" % text)
     return int(text)
-
-
-def shard(text):
-    found = re.fullmatch("([0-9]{1,6}|all)/([0-9]{1,6})", text, re.ASCII)
-    found = found and tuple([x if x == "all" else int(x) for x in found.groups()])
-    if not found or not is_shard(*found):
-        raise argparse.ArgumentTypeError("'%.40s' is not I/N with 1 <= I <= N, nor all/N" % text)
-    return found
 
 
 def parser():
@@ -54,7 +45,7 @@ exit status:
        parts, wrong counts, a skipped part without its mirror image), or it is a
        diagram or portrait of which nothing is proved
   2    bad usage, or a file that cannot be read
-  3    verified in part: for successors in a part of the torus only, or a shard
+  3    verified in part: for successors in a part of the torus only
   4    a spot check in which nothing failed: NOT a verification
   5    not confirmed: the claim is false or its proof beyond the checker's limits
   130  interrupted (129, 143: by SIGHUP, SIGTERM)
@@ -66,12 +57,6 @@ exit status:
                    help="processes (default 1)")
     p.add_argument("--sample", type=positive_int, metavar="K",
                    help="only a spot check, of K leaves chosen by chance; not a verification")
-    p.add_argument("--state", metavar="FILE", help=(
-        "remember in FILE what was confirmed, and resume from FILE if it exists; what FILE "
-        "records is not checked again"))
-    p.add_argument("--shard", type=shard, metavar="I/N", help=(
-        "check only the proved leaves I, I + N, I + 2N, ...; keep the result in FILE.I-of-N, where "
-        "FILE is that of --state; all/N: combine the N results"))
     p.add_argument("--exact", action="store_true", help=(
         "bound all leaves in integers, not first in doubles by numpy: dozens of times slower"))
     p.add_argument("--quiet", action="store_true", help=(
@@ -106,8 +91,8 @@ def command(argv, options):
             return written("", end.code)
         # Nothing here uses BLAS, whose threads cost 0.03 s of processor time at the start of numpy.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-        result = verify(options.file, min(options.jobs, 61), options.sample, options.state,
-                        not options.quiet, options.exact, options.shard)
+        result = verify(options.file, min(options.jobs, 61), options.sample,
+                        not options.quiet, options.exact)
         return written((result.text + "\n") * (result.status != VERIFIED or not options.quiet),
                        result.status)
     except Failure as error:
@@ -126,13 +111,10 @@ def main(argv=None):
     argv
         The arguments; None: the arguments of the process, whose signals are then handled.
     """
-    options = argparse.Namespace(file="", state=None)
+    options = argparse.Namespace(file="")
     with interruptible(argv is None):
         try:
             return command(argv, options)
         except KeyboardInterrupt as end:
-            message = "interrupted; nothing was verified"
-            if options.state is not None:
-                message += ", but the same command goes on from " + options.state
-            complain((options.file and options.file + ": ") + message)
+            complain((options.file and options.file + ": ") + "interrupted; nothing was verified")
             return INTERRUPTED + (end.args[0] if end.args else signal.SIGINT)

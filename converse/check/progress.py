@@ -34,20 +34,13 @@ def complain(text):
         print("converse-check: " + shown(text), file=sys.stderr, flush=True)
 
 
-def cost(cell):
-    """About what it takes to confirm a leaf: orbits are as long as their leaves are deep, and the
-    work grows with the square of their length."""
-    return 1 + sum(cell[1]) ** 2
-
-
 class Bar:
-    """The progress on stderr: leaves, and by their cost what is left.  On a terminal one line that
-    is written again and again, elsewhere a new line now and then."""
+    """The progress on stderr.  On a terminal one line that is written again and again, elsewhere a
+    new line now and then."""
 
-    def __init__(self, work, total):
-        self.total, self.done, self.spent, self.began = total, 0, 0, time.monotonic()
-        self.work, self.cost, self.width = work, 0, 0
-        self.on = bool(work) and sys.stderr is not None
+    def __init__(self, wanted, total):
+        self.total, self.done, self.width, self.began = total, 0, 0, time.monotonic()
+        self.on = wanted and sys.stderr is not None
         self.terminal = self.on and sys.stderr.isatty()
         self.pause = BAR_SECONDS if self.terminal else LINE_SECONDS
         self.drawn = self.began + 5 * BAR_SECONDS * self.terminal   # a short check has none
@@ -55,15 +48,12 @@ class Bar:
     def __enter__(self):
         return self
 
-    def advance(self, leaves, spent):
-        self.done, self.spent = self.done + leaves, self.spent + spent
+    def advance(self, leaves):
+        self.done += leaves
         now = time.monotonic()
-        if self.on and self.spent and now > self.drawn + self.pause:
+        if self.on and now > self.drawn + self.pause:
             self.drawn = now
-            self.cost = self.cost or sum(cost(cell) for _, (_, cell) in self.work)
-            self.draw("{:,} of {:,} leaves, {:.0%}, about {} left".format(
-                self.done, self.total, self.spent / self.cost,
-                duration((now - self.began) * (self.cost / self.spent - 1))))
+            self.draw("{:,} of {:,} leaves".format(self.done, self.total))
 
     def tell(self, text):
         """Shows the step that begins; it can take minutes."""
@@ -81,10 +71,3 @@ class Bar:
     def __exit__(self, *_):
         if self.width:
             self.draw("")
-
-
-def duration(seconds):
-    for unit, length in (("days", 86400), ("h", 3600), ("min", 60)):
-        if seconds >= 2 * length:
-            return "%d %s" % (seconds / length, unit)
-    return "%d s" % seconds

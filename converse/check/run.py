@@ -18,7 +18,6 @@ from .portrait import FIRST_LINE as PORTRAIT
 from .portrait import Portrait, portrayed, read_portrait
 from .progress import Bar, reason
 from .proof_file import MAGIC, read_proof
-from .state import is_shard, state_of
 from .torus_file import TORUS_MAGIC, TorusClaim, read_torus
 from .tree import check_mirror_images, check_tree
 from .words import claimed, not_excluded, report
@@ -117,7 +116,7 @@ def read(path):
     return read_proof(data)
 
 
-def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=None):
+def verify(path, jobs=1, sample=None, bar=False, exact=False):
     """Verifies a proof file, a diagram, a portrait or a certificate of existence.
 
     Parameters
@@ -127,17 +126,12 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
     jobs
         The number of processes.
     sample
-        Check only this number of leaves, chosen by chance: a spot check.  None: check all.
-    state
-        A file that remembers which leaves are confirmed, so that an interrupted check can go on; it
-        is kept in the end.  A certificate of existence takes neither a sample nor a state.
+        Check only this number of leaves, chosen by chance: a spot check.  None: check all.  A
+        certificate of existence takes no sample.
     bar
         Whether to show the progress on stderr.
     exact
         Whether to use integers alone, as without numpy.
-    shard
-        (i, n), 1 <= i <= n: check only the leaves i, i + n, i + 2n, ..., and keep the result in the
-        file STATE.i-of-n.  ("all", n): check no leaf, and put the n results together.
 
     Returns
     -------
@@ -147,23 +141,16 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
     Raises
     ------
     ValueError
-        jobs or sample is below 1, or there is no such shard.
+        jobs or sample is below 1.
     Rejected, NotConfirmed, Unusable
         The theorem is not verified; the text says why.
     """
     if jobs < 1 or sample is not None and sample < 1:
         raise ValueError("jobs and sample are 1 or more")
-    if shard is not None and not is_shard(*shard):
-        raise ValueError("shard is (i, n) with 1 <= i <= n, or ('all', n) with n >= 1")
-    if sample is not None and (state is not None or shard is not None):
-        raise Unusable("a spot check keeps no state; give --sample or --state")
-    if shard is not None and state is None:
-        raise Unusable("a shard keeps its result in a state; name one by --state FILE")
     file = read(path)
     if isinstance(file, TorusClaim):
-        if sample is not None or state is not None:
-            raise Unusable("a certificate of existence is verified as a whole: no --sample, no "
-                           "--state")
+        if sample is not None:
+            raise Unusable("a certificate of existence is verified as a whole: no --sample")
         (lines, facts), = check_tori([file], jobs, bar)
         return verdict(VERIFIED, lines, file, len(facts), len(file.pieces), facts)
     problems, theorem_of = problems_of(file)
@@ -172,19 +159,16 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
     except ValueError:                  # of an integer that Python does not print
         raise NotConfirmed("a number of the theorem has too many digits for this checker") from None
     total = due = sum([claim.tree.count("P") for claim in problems.claims])
-    done = state_of(state, file.sha256, total, shard)
-    earlier = done.confirmed
-    chosen = done.leaves[earlier:]
+    chosen = range(total)
     if sample is not None:
         chosen = set(random.SystemRandom().sample(chosen, min(sample, total)))
     if chosen and not exact:
         problems.fast = make_lockstep(problems.claims)
-    check_leaves(problems, chosen, done, jobs, bar)
+    confirmed, pieces, doubles = check_leaves(problems, chosen, jobs, bar)
     status, lines = report(problems.claims, theorem,
                            problems.criterion(0) if theorem_of is claimed else None,
-                           done.confirmed, done.pieces, done.doubles)
-    confirmed = done.confirmed
-    if isinstance(file, Diagram) and sample is None and done.shard[1] == 1:
+                           confirmed, pieces, doubles)
+    if isinstance(file, Diagram) and sample is None:
         tori = [member.claim for member in file.tori]
         confirmed += sum([len(facts) for _, facts in check_tori(tori, jobs, bar)])
         due += sum([len(claim.pieces) for claim in tori])
@@ -192,23 +176,13 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
     if sample is not None:
         status, due = SPOT_CHECK, len(chosen)
         lines[:1] = ["Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
-                     % (done.confirmed, total), "What is claimed and NOT verified :"]
-    elif done.shard[1] > 1:
-        status, due = PART, len(done.leaves)
-        lines[:1] = ["Shard %d of %d, %d of %d proved leaves: none of them fails."
-                     % (*shard, done.confirmed, total),
-                     "What is claimed, and NOT verified until all shards are put together :"]
-    elif earlier:
-        lines[0] = lines[0].replace(" :", ", %d of %d leaves by %s :"
-                                    % (earlier, total, done.earlier_runs))
-    if earlier:
-        lines += ["Of these, by %s whose state was believed : %d" % (done.earlier_runs, earlier)]
+                     % (confirmed, total), "What is claimed and NOT verified :"]
     return verdict(status, lines, file, confirmed, due)
 
 
 def verdict(status, lines, file, confirmed, due, facts=()):
     """The Result, with this status only if as many leaves P, or pieces of a certificate, are
-    confirmed as are due: all of the file, unless the status is that of a spot check or a shard.
+    confirmed as are due: all of the file, unless the status is that of a spot check.
 
     Raises RuntimeError otherwise, as the checker is at fault.
     """
@@ -241,7 +215,7 @@ def check_tori(claims, jobs, bar):
     if not claims:
         return []
     from .tori import verify_torus  # here, as its modules would delay all other checks
-    with Bar(claims if bar else (), len(claims)) as progress:
+    with Bar(bar, len(claims)) as progress:
         found = []
         for n, claim in enumerate(claims, 1):
             with named("torus %d" % n if len(claims) > 1 else ""):
@@ -249,13 +223,10 @@ def check_tori(claims, jobs, bar):
     return found
 
 
-def check_leaves(problems, chosen, done, jobs, bar):
-    """Checks the leaves P with these numbers, and tells done (a State) how many are confirmed;
-    NotConfirmed, if one is not excluded."""
-    def work():
-        return ((n, leaf) for n, leaf in enumerate(problems.leaves()) if n in chosen)
-
-    queue = work()
+def check_leaves(problems, chosen, jobs, bar):
+    """Checks the leaves P with these numbers: how many are confirmed, of how many pieces, and how
+    many were tried in doubles.  NotConfirmed: one is not excluded."""
+    queue = ((n, leaf) for n, leaf in enumerate(problems.leaves()) if n in chosen)
     size = CHUNK
     if problems.fast:
         fewest, most = FAST_CHUNK
@@ -266,15 +237,14 @@ def check_leaves(problems, chosen, done, jobs, bar):
     if problems.fast:
         problems.fast.memory = 2 * problems.fast.memory // max(jobs, 2)
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
-    try:
-        with Bar(work() if bar else (), len(chosen)) as progress, \
-                contextlib.closing(check_all(chunks, jobs, problems)) as results:
-            for n, spent, pieces, fast, failure in results:
-                done.advance(n, pieces, n * fast)
-                progress.advance(n, spent)
-                if failure:
-                    n, (at, cell), why = failure
-                    before = sum([claim.counts["proved"] for claim in problems.claims[:at]])
-                    raise NotConfirmed(not_excluded(problems.claims[at], n - before, cell, why))
-    finally:
-        done.save()
+    confirmed = [0, 0, 0]
+    with Bar(bar, len(chosen)) as progress, \
+            contextlib.closing(check_all(chunks, jobs, problems)) as results:
+        for n, pieces, fast, failure in results:
+            confirmed = [a + b for a, b in zip(confirmed, (n, pieces, n * fast))]
+            progress.advance(n)
+            if failure:
+                n, (at, cell), why = failure
+                before = sum([claim.counts["proved"] for claim in problems.claims[:at]])
+                raise NotConfirmed(not_excluded(problems.claims[at], n - before, cell, why))
+    return confirmed

@@ -9,7 +9,6 @@ from .failures import Unusable, named
 from .limits import MAX_SITES
 from .lockstep import import_numpy_if_sound, least_in_double
 from .processes import ProcessDied, in_order
-from .progress import cost
 from .signals import undisturbed
 from .tree import leaves
 
@@ -69,8 +68,8 @@ class Problems:
                     yield n, cell
 
     def check_chunk(self, chunk):
-        """Checks leaves in order: (how many are confirmed, their cost and pieces, whether they were
-        tried in doubles, what then fails).
+        """Checks leaves in order: (how many are confirmed, their pieces, whether they were tried in
+        doubles, what then fails).
 
         The rounding of numpy is looked at each time, in the process and thread that use it.
         """
@@ -89,8 +88,7 @@ class Problems:
                     break
                 pieces.append(tried)
         n = refused[0] if refused else len(cells)
-        return n, sum([cost(cell) for _, cell in cells[:n]]), sum(pieces[:n]), fast, \
-            refused and (*chunk[n], refused[1])
+        return n, sum(pieces[:n]), fast, refused and (*chunk[n], refused[1])
 
 
 def check_all(chunks, jobs, problems):

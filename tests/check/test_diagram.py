@@ -65,16 +65,6 @@ def test_a_compressed_diagram_and_a_spot_check(diagram, run):
     assert status == 4 and "Certificates" not in out and "NOT verified" in out
 
 
-def test_the_state_of_a_diagram(diagram, run, tmp_path):
-    state = tmp_path / "state"
-    assert run(diagram, "--state", str(state))[0] == 0
-    proved = sum(re.search("\ntree:\n([^:]*)\nchecksum", text)[1].count("P")
-                 for text in members(diagram)[1][:2])
-    assert "confirmed: %d\n" % proved in state.read_text()
-    out = run(diagram, "--state", str(state))[1]
-    assert "by an earlier run" in out and "Certificates of tori checked : 1\n" in out
-
-
 def test_two_parameters(froeschle, run):
     status, out, _ = run(froeschle)
     assert status == 0 and "  every k in [1.5, 1.6], every b in [0.1, 0.2]\n" in out

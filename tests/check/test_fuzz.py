@@ -172,40 +172,6 @@ def test_any_bytes_as_a_proof_file(tmp_path_factory, start, data, seal):
     one_line(caught.value)
 
 
-@pytest.fixture(scope="module")
-def kept(proof_bytes, tmp_path_factory):
-    """A claim and a state of it."""
-    path = tmp_path_factory.mktemp("fuzz") / "whole.proof"
-    path.write_bytes(proof_bytes)
-    claim = check.read(path)
-    state = check.State(path.with_suffix(".state"), claim.sha256, claim.tree.count("P"))
-    state.advance(7, 9, 5)
-    state.save()
-    return claim, path.with_suffix(".state").read_bytes()
-
-
-@MANY
-@given(edits=edits, seal=st.booleans())
-@example([("insert", 30, b" ")], True)
-def test_any_change_of_a_state(kept, tmp_path_factory, edits, seal):
-    """A changed state is refused and left as it is, unless it is resealed on purpose."""
-    path = tmp_path_factory.getbasetemp() / ("state-%d" % os.getpid())
-    claim, good = kept
-    data = edited(good, edits)
-    if seal:
-        head, found, _ = data.rpartition(b"checksum: sha256 ")
-        data = head + found + hashlib.sha256(head).hexdigest().encode() + b"\n"
-    path.write_bytes(data)
-    try:
-        found = check.State(path, claim.sha256, claim.tree.count("P"))
-    except check.Unusable as error:
-        one_line(error)
-        assert path.read_bytes() == data != good
-    else:
-        assert seal or (data, found.confirmed, found.pieces, found.doubles) == (good, 7, 9, 5)
-        assert 0 <= found.confirmed <= claim.tree.count("P")
-
-
 # ---- changes that make sense: another claim or tree, with the counts and the checksum it needs
 
 @pytest.fixture(scope="module")

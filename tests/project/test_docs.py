@@ -51,7 +51,7 @@ def test_commands_are_understood():
         lines = re.findall(r"^    (?:\S*/)?(converse\S*) *(.*)$", text, re.MULTILINE)
         spans = re.findall(r"`(converse\S*) ([^`[]*)`", text)
         for command, arguments in lines + spans:
-            first_line = re.match("(proof|state|diagram|portrait|torus) [0-9]$", arguments)
+            first_line = re.match("(proof|diagram|portrait|torus) [0-9]$", arguments)
             if command in PARSERS and "..." not in arguments and not first_line:
                 arguments = re.sub(r"\b[KN]\b", "3", arguments.partition("#")[0])
                 try:
