@@ -44,9 +44,6 @@ def with_files(parser):
     for action in parser._actions:
         if action.dest == "directory":
             action.complete = shtab.DIRECTORY
-        elif isinstance(action.choices, dict):          # subcommands
-            for command in action.choices.values():
-                with_files(command)
         elif action.metavar in ("FILE", "POTENTIAL", "MAP") or not (
                 action.metavar or action.option_strings):
             action.complete = shtab.FILE

@@ -1,4 +1,4 @@
-"""The command: converse-orbits find."""
+"""The command: converse-orbits POTENTIAL TYPE EPS."""
 
 import argparse
 import io
@@ -17,11 +17,11 @@ from .common import SIGNALS, Parser, ProgressLine, check_figure, command, ending
 COMMAND = "converse-orbits"
 POTENTIALS = "trig", "poly", "ff", "froeschle", "standard"
 MOST_EPS = 10000                        # values of eps
-SISTERS = ("converse-tori      proves that a torus exists\n"
-           "converse-portrait  shows where in phase space a map of one angle has no circle\n"
-           "converse           proves that there are no tori")
-FIND = ending(
-    "converse-orbits find standard 89/233 0.9 0.97 --minimax --prove -g ghost.svg", SISTERS, (
+ENDING = ending(
+    "converse-orbits standard 89/233 0.9 0.97 --minimax --prove -g ghost.svg",
+    "converse-tori      proves that a torus exists\n"
+    "converse-portrait  shows where in phase space a map of one angle has no circle\n"
+    "converse           proves that there are no tori", (
         (0, "all was found that was asked for"),
         (1, "an orbit was not found, is not a minimum, or is not proved with --prove"),
         (2, "bad usage, input or file"), SIGNALS))
@@ -98,40 +98,32 @@ def _check_type(potential, vector):
 
 
 def parser():
-    p = Parser(prog=COMMAND, description=(
+    p = Parser(prog=COMMAND, epilog=ENDING, description=(
         "Finds periodic orbits of least action of the map x' = x + p', p' = p - eps grad V(x), "
-        "by continuation from eps 0.  Angles have period 1; those of an input file, and of its "
-        "results, have period 2 pi."), epilog=FIND)
+        "all of one type, by continuation from eps 0, and prints their properties.  Angles have "
+        "period 1; those of an input file, and of its results, have period 2 pi."))
+    p.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
+    p.add_argument("type", metavar="TYPE", type=_vector, help="p0,p1/q, such as 1432,1897/2513; "
+                   "p/q for one angle")
+    p.add_argument("eps", metavar="EPS", type=_eps, nargs="+", help="the factor of the "
+                   "potential (1: the map of an input file), or LOW:HIGH:STEP; states are "
+                   "followed from one value to the next")
+    p.add_argument("--at", type=_value, metavar="NAME=VALUE", action="append", default=[],
+                   help=AT)
+    p.add_argument("--prove", action="store_true", help="prove that an orbit is near each "
+                   "state and is a minimum; enclose its action and its exponents")
+    p.add_argument("--minimax", action="store_true", help="find the pass to the neighbouring "
+                   "minimum, and the flux; with --prove, prove both")
+    p.add_argument("--csv", metavar="FILE", help="write a row for each state")
+    p.add_argument("--points", metavar="FILE", help="write the points and momenta of the "
+                   "states, as NPZ")
+    p.add_argument("--from", dest="start", metavar="FILE", help="begin at the state "
+                   "of FILE, written by --points, that is nearest in eps, and not at eps 0")
+    p.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
+                   "the states: SVG, PNG or PDF by the name")
+    p.add_argument("--no-caption", action="store_true", help="draw no caption")
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
-    _find_parser(p.add_subparsers(metavar="COMMAND", required=True))
     return p
-
-
-def _find_parser(commands):
-    find = commands.add_parser(
-        "find", epilog=FIND, help="find the orbits of one type",
-        description="Finds the states of one type, and prints their properties.")
-    find.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
-    find.add_argument("type", metavar="TYPE", type=_vector, help="p0,p1/q, such as 1432,1897/2513; "
-                      "p/q for one angle")
-    find.add_argument("eps", metavar="EPS", type=_eps, nargs="+", help="the factor of the "
-                      "potential (1: the map of an input file), or LOW:HIGH:STEP; states are "
-                      "followed from one value to the next")
-    find.add_argument("--at", type=_value, metavar="NAME=VALUE", action="append", default=[],
-                      help=AT)
-    find.add_argument("--prove", action="store_true", help="prove that an orbit is near each "
-                      "state and is a minimum; enclose its action and its exponents")
-    find.add_argument("--minimax", action="store_true", help="find the pass to the neighbouring "
-                      "minimum, and the flux; with --prove, prove both")
-    find.add_argument("--csv", metavar="FILE", help="write a row for each state")
-    find.add_argument("--points", metavar="FILE", help="write the points and momenta of the "
-                      "states, as NPZ")
-    find.add_argument("--from", dest="start", metavar="FILE", help="begin at the state "
-                      "of FILE, written by --points, that is nearest in eps, and not at eps 0")
-    find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
-                      "the states: SVG, PNG or PDF by the name")
-    find.add_argument("--no-caption", action="store_true", help="draw no caption")
-    return find
 
 
 # ---- what is done
@@ -165,7 +157,7 @@ def _start(options, potential, straight, eps):
 
 
 class _Finding:
-    """What `find` found: each state is reported, and proved if asked for, when it is known."""
+    """What is found: each state is reported, and proved if asked for, when it is known."""
 
     def __init__(self, options, line):
         self.options, self.line = options, line
@@ -221,7 +213,10 @@ class _Finding:
                 self.drawn, files.ending(options.graphics), caption=not options.no_caption))
 
 
-def find_states(options):
+def run(options):
+    from converse import orbits
+
+    orbits.PeriodicOrbit                        # or a line that says what is missing
     potential = read_potential(options.potential, options.at)
     p, q = _check_type(potential, options.type)
     _check_outputs(options, options.potential)
@@ -251,13 +246,6 @@ def find_states(options):
             found.failed = True
     found.write_files()
     return int(found.failed)
-
-
-def run(options):
-    from converse import orbits
-
-    orbits.PeriodicOrbit                        # or a line that says what is missing
-    return find_states(options)
 
 
 main = command(COMMAND, parser, run, lambda options: "no table, points or figure is written")

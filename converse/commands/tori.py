@@ -1,4 +1,4 @@
-"""The command: converse-tori prove."""
+"""The command: converse-tori INPUT -b FILE."""
 
 import argparse
 import contextlib
@@ -16,8 +16,8 @@ from .common import (MAP, SIGNALS, TOGETHER, Parser, ProgressLine, check_figure,
 
 COMMAND = "converse-tori"
 ENDING = ending(
-    "converse-tori prove standard-k090.in -b k090.torus\n"
-    "converse-tori prove standard-k090.in --rotation golden -b golden.torus\n"
+    "converse-tori standard-k090.in -b k090.torus\n"
+    "converse-tori standard-k090.in --rotation golden -b golden.torus\n"
     "converse-check golden.torus\n"
     "(the input is one of those that converse --list-inputs names)",
     "converse-check   verifies the certificate independently\n"
@@ -43,19 +43,8 @@ def _positive(text):
 
 def parser():
     p = Parser(prog=COMMAND, epilog=ENDING, description=(
-        "Proves that %s, has an invariant torus, a graph J = P + "
-        "S'(y)." % MAP))
-    p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
-    _prove_parser(p.add_subparsers(metavar="COMMAND", required=True))
-    return p
-
-
-def _prove_parser(commands):
-    p = commands.add_parser("prove", epilog=ENDING, help=(
-        "find a torus in floating-point numbers, and prove that there is one near it"),
-        description=("Finds an invariant torus of %s, in floating-point numbers, and proves that "
-                     "there is one near it." % MAP))
-    p.set_defaults(run=prove_torus)
+        "Finds an invariant torus, a graph J = P + S'(y), of %s, in floating-point numbers, and "
+        "proves that there is one near it." % MAP))
     p.add_argument("input", nargs="?", metavar="FILE", help="input file, the thesis's or "
                    "JSON; standard input if it is - or left out; one parameter may have a range")
     p.add_argument("--rotation", metavar="ROTATION", help=(
@@ -86,6 +75,7 @@ def _prove_parser(commands):
                    help="begin no step after this time")
     p.add_argument("--memory", type=_positive, metavar="GB", help="the most memory that "
                    "refining the torus takes, in GB (default: three quarters of the free memory)")
+    p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 
 
@@ -188,16 +178,18 @@ def _rotation(options, potential, start):
     return start and start.rotation
 
 
-def prove_torus(options):
+def run(options):
+    from .. import tori
+
+    tori.Rotation                       # or a line that says what is missing
     with contextlib.ExitStack() as locks:
         _check_outputs(options, locks)
-        return _prove_torus(options)
+        return _prove(options, tori)
 
 
-def _prove_torus(options):
+def _prove(options, tori):
     import numpy
 
-    from .. import tori
     from ..tori import report
     from ..tori.proved import processor_time
     from ..tori.torus import family
@@ -249,13 +241,6 @@ def _start(path):
         raise ConverseError("%s: is of a range; to start from, name the certificate of one torus"
                             % plain(path))
     return found.tori[0]
-
-
-def run(options):
-    from converse import tori
-
-    tori.Rotation                       # or a line that says what is missing
-    return options.run(options)
 
 
 def interrupted(options):

@@ -59,7 +59,7 @@ def load(path, potential=None):
             zipfile.BadZipFile, MemoryError, RuntimeError, zlib.error):
         found = []
     if not found:
-        raise ConverseError("%s: is not a file of states, or damaged: name one that find --points "
+        raise ConverseError("%s: is not a file of states, or damaged: name one that --points "
                             "or save() wrote" % path)
     if potential is None:
         potential = STUDIED.get(name)

@@ -126,7 +126,7 @@ class Family:
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"],
              potential: Optional[Source] = None) -> "Family":
-        """Reads the states that PeriodicOrbit.save, Family.save or converse-orbits find --points
+        """Reads the states that PeriodicOrbit.save, Family.save or converse-orbits --points
         wrote, to the last bit.
 
         Parameters

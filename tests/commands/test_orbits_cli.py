@@ -50,7 +50,7 @@ def numbers(out, name):
     ("ff", "12,16/21", "0.01", [0.01]), ("poly", "(12, 16)/21", "1/512", [1 / 512]),
     ("standard", "89/233", "1 1.1", [1.0, 1.1])])
 def test_the_report_is_the_familys(run, name, vector, eps, values):
-    status, out, err = run("find", name, vector, *eps.split())
+    status, out, err = run(name, vector, *eps.split())
     assert (status, err) == (0, "")
     p, q = cli._vector(vector)
     family = orbits.follow(getattr(orbits, name), p, q, values)
@@ -69,7 +69,7 @@ def test_the_report_is_the_familys(run, name, vector, eps, values):
 
 
 def test_what_is_undetermined_is_said(run):
-    status, out, err = run("find", "trig", "200,265/351", "0.002")
+    status, out, err = run("trig", "200,265/351", "0.002")
     state = orbits.follow(orbits.trig, (200, 265), 351, [0.002])[0]
     assert (status, err, state.undetermined) == (0, "", 2)
     assert "Near-null directions : 2, along which" in out
@@ -81,25 +81,25 @@ def test_what_is_no_minimum_ends_with_status_1(run, monkeypatch):
     assert minimax.label == "saddle"
     monkeypatch.setattr("converse.orbits.solver.follow",
                         lambda *_, progress, **how: progress(1, minimax))
-    status, out, err = run("find", "standard", "1/3", "0.5")
+    status, out, err = run("standard", "1/3", "0.5")
     assert (status, err) == (1, "")
     assert "State : saddle (floating point: its action can be lowered" in out
     assert "Exponents : below 1e-05\n" in out and "Residue : 0." in out
 
 
 def test_find_minimax(run):
-    status, out, err = run("find", "standard", "8/21", "0.971635406", "--minimax", "--prove")
+    status, out, err = run("standard", "8/21", "0.971635406", "--minimax", "--prove")
     assert (status, err) == (0, "")
     assert "Pass : saddle, towards the neighbour displaced by 1/21\n" in out
     assert "Residue of the minimax orbit : 0.2522989653\nFlux : 4.728387149e-06\n" in out
     assert "one negative direction" in out and "\nFlux : 4.7283871494" in out
-    status, out, err = run("find", "trig", "5,7/9", "0.02", "--minimax")
+    status, out, err = run("trig", "5,7/9", "0.02", "--minimax")
     assert status == 0 and "Difference of action : 0.0001613288491\n" in out
-    status, out, err = run("find", "standard", "8/21", "0.2", "--minimax")
+    status, out, err = run("standard", "8/21", "0.2", "--minimax")
     assert status == 0 and "Pass : too flat for doubles" in out
-    status, out, err = run("find", "standard", "8/20", "0.2", "--minimax")
+    status, out, err = run("standard", "8/20", "0.2", "--minimax")
     assert (status, out, err.count("\n")) == (2, "", 1) and "divide it by 4" in err
-    status, out, err = run("find", "standard", "1/3", "0", "--minimax")
+    status, out, err = run("standard", "1/3", "0", "--minimax")
     assert (status, err) == (1, "") and "No pass : at eps 0 all states" in out
 
 
@@ -112,7 +112,7 @@ def test_what_is_not_found_ends_with_status_1(run, monkeypatch):
         return relax(state, eps, *rest, **options)
 
     monkeypatch.setattr(orbits.PeriodicOrbit, "relax", fails)
-    status, out, err = run("find", "trig", SMALL, "0.01", "0.02")
+    status, out, err = run("trig", SMALL, "0.01", "0.02")
     assert (status, err) == (1, "")
     assert out.count("State : minimum") == 1 and out.endswith("\nNot found : no orbit\n")
 
@@ -120,7 +120,7 @@ def test_what_is_not_found_ends_with_status_1(run, monkeypatch):
 @pytest.mark.parametrize("kind, eps", [("-12,16/21", "0.02"), ("(-12, -16)/21", "-0.02:0:0.01"),
                                        ("12,16/21", "-.02")])
 def test_what_begins_with_a_minus_is_no_option(run, kind, eps):
-    status, out, err = run("find", "trig", kind, eps)
+    status, out, err = run("trig", kind, eps)
     assert (status, err) == (0, "") and kind.strip("()").split(",")[0] in out
     low = float(eps.split(":")[0])
     assert "\neps : %r\n" % low in out
@@ -128,16 +128,16 @@ def test_what_begins_with_a_minus_is_no_option(run, kind, eps):
 
 def test_table_and_figure(run, tmp_path):
     table, picture = tmp_path / "table.csv", tmp_path / "figure.svg"
-    assert run("find", "trig", SMALL, "0.01:0.02:0.01", "--csv", table, "-g", picture)[0] == 0
+    assert run("trig", SMALL, "0.01:0.02:0.01", "--csv", table, "-g", picture)[0] == 0
     text = io.StringIO()
     orbits.follow(orbits.trig, (65, 86), 114, [0.01, 0.02]).write_csv(text)
     assert table.read_text() == text.getvalue()
     assert "<svg" in picture.read_text()
     with_words = picture.read_text()
-    assert run("find", "trig", SMALL, "0.01:0.02:0.01", "--no-caption", "-g", picture)[0] == 0
+    assert run("trig", SMALL, "0.01:0.02:0.01", "--no-caption", "-g", picture)[0] == 0
     assert "Minimum: a local one" in with_words and "Minimum: a" not in picture.read_text()
     other = tmp_path / "figure.PNG"
-    assert run("find", "standard", "1/3", "0.5", "--graphics=%s" % other)[0] == 0
+    assert run("standard", "1/3", "0.5", "--graphics=%s" % other)[0] == 0
     assert other.read_bytes().startswith(b"\x89PNG")
 
 
@@ -149,7 +149,7 @@ def test_the_picture_of_what_is_proved(run, tmp_path, monkeypatch):
         shown.extend(drawn), rows(page, drawn))[1])
     monkeypatch.setattr(pictures.plot, "written", lambda width, height, kind, fill: (
         said.append(fill(Figure())), b"")[1])
-    status, out, _ = run("find", "standard", "1/3", "0.5", "0.9", "--prove", "-g",
+    status, out, _ = run("standard", "1/3", "0.5", "0.9", "--prove", "-g",
                          tmp_path / "x.svg")
     assert status == 0 and out.count("THEOREM, proved with") == 2
     proofs = [orbits.prove(s) for s in orbits.follow(orbits.standard, (1,), 3, [0.5, 0.9])]
@@ -160,10 +160,10 @@ def test_the_picture_of_what_is_proved(run, tmp_path, monkeypatch):
         assert Fraction(near) >= proof.radius and Fraction(away) >= proof.moved
         assert "within %s of the points" % near in out and "within %s of those" % away in out
     assert "nothing is proved" not in said[0] and "Proved: a true orbit" in said[0]
-    assert run("find", "standard", "1/3", "0", "0.5", "--prove", "-g", tmp_path / "x.svg")[0] == 1
+    assert run("standard", "1/3", "0", "0.5", "--prove", "-g", tmp_path / "x.svg")[0] == 1
     assert [pictures.kind(one).startswith("proved") for one in shown[2:]] == [False, True]
     assert "nothing is proved" in said[1] and "Proved: a true orbit" in said[1]
-    run("find", "standard", "1/3", "0.5", "-g", tmp_path / "x.svg")
+    run("standard", "1/3", "0.5", "-g", tmp_path / "x.svg")
     assert "nothing is proved" in said[2] and "Proved: a true orbit" not in said[2]
 
 
@@ -173,7 +173,7 @@ def test_a_potential_in_a_file(run, root, tmp_path):
     mine = cli.read_potential(str(path), [("K", Fraction("0.9"))])
     assert (mine.name, mine.n) == ("standard, K = 0.9", 1)
     assert list(mine.sum.terms(0)) == [((1, 0), (Fraction(9, 10),) * 2, (0, 0))]
-    status, out, err = run("find", path, "34/55", "1", "1.2", "--at", "K=0.9")
+    status, out, err = run(path, "34/55", "1", "1.2", "--at", "K=0.9")
     assert (status, err) == (0, "") and "Potential : standard, K = 0.9\n" in out
     assert "J' = J - eps grad V(y), angles of period 2 pi\n" in out
     assert "\nV(y) : 0.9 cos(y)\n" in out
@@ -182,8 +182,8 @@ def test_a_potential_in_a_file(run, root, tmp_path):
         assert action == pytest.approx(4 * math.pi ** 2 * state.action, abs=1e-11)
     named = tmp_path / "trig.json"                  # another potential, another name
     named.write_text('{"harmonics": [{"k": [1], "amplitude": 1}]}')
-    assert "Potential : trig.json\nV(y) : " in run("find", named, "1/3", "0.1")[1]
-    status, out, err = run("find", root / "inputs" / "trig278.in", "5,7/9", "1", "--at", "a=0.1",
+    assert "Potential : trig.json\nV(y) : " in run(named, "1/3", "0.1")[1]
+    status, out, err = run(root / "inputs" / "trig278.in", "5,7/9", "1", "--at", "a=0.1",
                            "--at", "b=1/7", "--at", "c=-0.2")
     assert (status, err) == (0, "") and (
         "V(y) : -0.1 sin(y0) - 1/7 sin(y1) + 0.2 sin(y0 + y1)\n" in out)
@@ -193,62 +193,61 @@ def test_a_potential_in_a_file(run, root, tmp_path):
 def test_a_file_of_bare_numbers_is_no_potential(run, tmp_path, text):
     path = tmp_path / "mine"
     path.write_text(text)
-    status, out, err = run("find", path, "1/3", "0.1")
+    status, out, err = run(path, "1/3", "0.1")
     assert (status, out) == (2, "") and one_line(err) and "mine, line 1: " in err
 
 
 def test_proof(run):
     """--prove gives the theorem of prove."""
-    status, out, err = run("find", "trig", "5,7/9", "0.03", "--prove")
+    status, out, err = run("trig", "5,7/9", "0.03", "--prove")
     assert (status, err) == (0, "")
     state, = orbits.follow(orbits.trig, (5, 7), 9, [0.03])
     assert "State : minimum (floating point, not proved" in out
     assert out.endswith(orbits.prove(state).report())
-    status, out, err = run("find", "trig", "200,265/351", "0", "--prove")
+    status, out, err = run("trig", "200,265/351", "0", "--prove")
     assert (status, err) == (1, "") and "\nNot proved : " in out
 
 
 # ---- help
 
 def test_help_and_version(run):
-    for command in ((), ("find",)):
-        status, out, err = run(*command, "--help")
-        assert (status, err) == (0, "") and "\nexit status:\n  0 " in out
+    status, out, err = run("--help")
+    assert (status, err) == (0, "") and "\nexit status:\n  0 " in out
     assert run("--version")[1].startswith("converse-orbits ")
 
 
 # ---- what goes wrong
 
 @pytest.mark.parametrize("arguments, words", [
-    ([], "required"), (["lose"], "choice"), (["find"], "required"),
-    (["find", "trig", SMALL], "EPS"),
-    (["find", "trig", SMALL, "0.01", "--what"], "--what"),
-    (["find", "trig", "1/2", "0.01"], "two angles"),
-    (["find", "standard", SMALL, "0.5"], "one angle"),
-    *[(["find", "trig", bad, "0.01"], "is not a type") for bad in (
+    ([], "required"), (["trig"], "required"),
+    (["trig", SMALL], "EPS"),
+    (["trig", SMALL, "0.01", "--what"], "--what"),
+    (["trig", "1/2", "0.01"], "two angles"),
+    (["standard", SMALL, "0.5"], "one angle"),
+    *[(["trig", bad, "0.01"], "is not a type") for bad in (
         "1,2/0", "1,2,3/4", "1,2", "1.5,2/3", "a,b/c", "1,2/-3", "", "1" * 10 + ",2/3",
         "1,2/3\n4")],
-    *[(["find", "trig", SMALL, bad], "is neither a number below 10^9") for bad in (
+    *[(["trig", SMALL, bad], "is neither a number below 10^9") for bad in (
         "x", "1e10", "nan", "inf", "1e400", "1e9999999999", "1/0", "1:2", "1:2:3:4", "", "1_0")],
-    (["find", "trig", SMALL, "1e6"], "too far to be followed"),
-    (["find", "trig", "5,7/999999999", "0.01"], "from 1 to 10000000"),
-    *[(["find", "trig", SMALL, bad], "range of no values") for bad in (
+    (["trig", SMALL, "1e6"], "too far to be followed"),
+    (["trig", "5,7/999999999", "0.01"], "from 1 to 10000000"),
+    *[(["trig", SMALL, bad], "range of no values") for bad in (
         "1:2:0", "2:1:0.1", "0:1:1e-9")],
-    (["find", "none", SMALL, "0.01"], "neither a potential nor a file"),
-    (["find", "DIR", SMALL, "0.01"], "cannot be read"),
-    (["find", "trig", SMALL, "0.01", "--csv", "DIR"], "ends in .csv"),
-    (["find", "trig", SMALL, "0.01", "--csv", "DIR/a.json"], "ends in .csv"),
-    (["find", "trig", SMALL, "0.01", "--csv", "DIR/other.csv"], "exists and is a table"),
-    (["find", "trig", SMALL, "0.01", "--csv", "DIR/sweep.csv"], "exists and is a table"),
-    (["find", "trig", SMALL, "0.01", "--csv", "DIR/no/x.csv"], "cannot be written"),
-    (["find", "trig", SMALL, "0.01", "-g", "DIR/x.ps"], ".svg or .png or .pdf"),
-    (["find", "trig", SMALL, "0.01", "-g", "DIR/other.svg"], "not a figure of this program"),
-    (["find", "trig", SMALL, "0:0.04:0.0001", "-g", "DIR/x.svg"], "states at most"),
-    (["find", "DIR/terms.json", "1/3", "0.01", "--csv", "DIR/terms.json"], "overwrite"),
-    (["find", "trig", SMALL, "0.01", "--at", "K=1"], "trig has no parameters"),
-    (["find", "DIR/terms.json", SMALL, "0.01", "--at", "K=1"], "there is no parameter K"),
-    (["find", "DIR/terms.json", SMALL, "0.01", "--at", "K"], "write NAME=NUMBER"),
-    (["find", "trig", "5,7/999999999", "0.01"], "whole number q from 1 to 10000000, not"),
+    (["none", SMALL, "0.01"], "neither a potential nor a file"),
+    (["DIR", SMALL, "0.01"], "cannot be read"),
+    (["trig", SMALL, "0.01", "--csv", "DIR"], "ends in .csv"),
+    (["trig", SMALL, "0.01", "--csv", "DIR/a.json"], "ends in .csv"),
+    (["trig", SMALL, "0.01", "--csv", "DIR/other.csv"], "exists and is a table"),
+    (["trig", SMALL, "0.01", "--csv", "DIR/sweep.csv"], "exists and is a table"),
+    (["trig", SMALL, "0.01", "--csv", "DIR/no/x.csv"], "cannot be written"),
+    (["trig", SMALL, "0.01", "-g", "DIR/x.ps"], ".svg or .png or .pdf"),
+    (["trig", SMALL, "0.01", "-g", "DIR/other.svg"], "not a figure of this program"),
+    (["trig", SMALL, "0:0.04:0.0001", "-g", "DIR/x.svg"], "states at most"),
+    (["DIR/terms.json", "1/3", "0.01", "--csv", "DIR/terms.json"], "overwrite"),
+    (["trig", SMALL, "0.01", "--at", "K=1"], "trig has no parameters"),
+    (["DIR/terms.json", SMALL, "0.01", "--at", "K=1"], "there is no parameter K"),
+    (["DIR/terms.json", SMALL, "0.01", "--at", "K"], "write NAME=NUMBER"),
+    (["trig", "5,7/999999999", "0.01"], "whole number q from 1 to 10000000, not"),
     (["figures", "DIR"], "invalid choice"),
 ])
 def test_bad_usage(run, tmp_path, arguments, words):
@@ -277,14 +276,14 @@ def test_bad_usage(run, tmp_path, arguments, words):
 def test_a_bad_potential(run, tmp_path, text, words):
     path = tmp_path / "mine"
     path.write_bytes(text)
-    status, out, err = run("find", path, "1,2/3", "0.01")
+    status, out, err = run(path, "1,2/3", "0.01")
     assert (status, out) == (2, "") and one_line(err) and words in err and str(path) in err
 
 
 @pytest.mark.parametrize("module, arguments", [
-    ("numpy", ["find", "trig", SMALL, "0.01"]),
-    ("converse._native", ["find", "trig", SMALL, "0.01"]),
-    ("matplotlib", ["find", "trig", SMALL, "0.01", "-g", "x.svg"])])
+    ("numpy", ["trig", SMALL, "0.01"]),
+    ("converse._native", ["trig", SMALL, "0.01"]),
+    ("matplotlib", ["trig", SMALL, "0.01", "-g", "x.svg"])])
 def test_what_is_missing_is_said(tmp_path, module, arguments):
     result = subprocess.run(
         [sys.executable, "-c", "import runpy, sys\nsys.modules[%r] = None\n"
@@ -298,7 +297,7 @@ def test_what_is_missing_is_said(tmp_path, module, arguments):
 
 
 def test_a_closed_pipe():
-    with subprocess.Popen([*COMMAND, "find", "trig", SMALL, "0.001:0.02:0.001"],
+    with subprocess.Popen([*COMMAND, "trig", SMALL, "0.001:0.02:0.001"],
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         process.stdout.close()
         err = process.stderr.read()

@@ -58,7 +58,7 @@ def value(out, pattern):
 @pytest.mark.slow
 def test_a_theorem(run, tmp_path):
     file = tmp_path / "golden.torus"
-    status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
+    status, out, err = run(K09, "--rotation", "golden", "-b", file)
     assert (status, err) == (0, "")
     proof = tori.prove(tori.find(read_input(K09), tori.read_rotation("golden")))
     assert out.startswith("THEOREM\n") and " has a rotational invariant circle with" in out
@@ -80,7 +80,7 @@ def test_a_theorem(run, tmp_path):
 def test_a_theorem_with_choices(run, tmp_path):
     problem = tmp_path / "small.in"
     problem.write_text("0.01 0\n0.01 0\n0.02 0\n1 1\n1 1\n")
-    status, out, err = run("prove", problem, "--rotation", "T49", "--memory", 1, "--margin", 30,
+    status, out, err = run(problem, "--rotation", "T49", "--memory", 1, "--margin", 30,
                            "--points", 4096)
     assert (status, err) == (0, "")
     assert "  has an invariant torus with the rotation vector omega = (" in out
@@ -90,7 +90,7 @@ def test_a_theorem_with_choices(run, tmp_path):
 def test_a_theorem_for_a_negative_rotation_number(run, tmp_path):
     problem = tmp_path / "half.json"
     problem.write_text('{"harmonics": [{"k": [1], "amplitude": 0.5, "phase": "-1/3"}]}')
-    status, out, err = run("prove", problem, "--rotation", "t^2+t-1: -1+t")
+    status, out, err = run(problem, "--rotation", "t^2+t-1: -1+t")
     assert (status, err) == (0, "")
     assert "omega = -1+t = -0.38196601125010515" in out
 
@@ -100,10 +100,10 @@ def test_a_start_from_a_certificate(run, tmp_path):
     problem = tmp_path / "standard.in"
     for k, more in (("0.5", ["--rotation", "golden", "-b", file]), ("0.55", ["-r", file])):
         problem.write_text(k + " 0\n0 0\n0 0\n1 1\n1 1\n")
-        status, out, err = run("prove", problem, *more)
+        status, out, err = run(problem, *more)
         assert (status, err) == (0, "") and "Rotation   golden, " in out
         assert "V(y) = -%s sin y,\n" % k in out
-    status, out, err = run("prove", TRIG, "-r", file)
+    status, out, err = run(TRIG, "-r", file)
     assert (status, out) == (2, "") and one_line(err)
     assert "its map has 1 angle, and this one 2" in err
 
@@ -114,7 +114,7 @@ def test_what_is_not_proved_is_said(run, tmp_path, monkeypatch):
     monkeypatch.setattr(certificate, "_piece", lambda torus, piece=certificate._piece: piece(
         dataclasses.replace(torus, numbers=torus.numbers * 99999 // 100000)))
     file = tmp_path / "golden.torus"
-    status, out, err = run("prove", K09, "-b", file, "--rotation", "golden", "--margin", 100)
+    status, out, err = run(K09, "-b", file, "--rotation", "golden", "--margin", 100)
     assert (status, err) == (1, "") and not file.exists()
     assert out.startswith("UNDECIDED: nothing is proved.  There may be no rotational")
     assert re.search("Not proved the error of the torus is [0-9.]+e-[0-9]+, where less than "
@@ -122,7 +122,7 @@ def test_what_is_not_proved_is_said(run, tmp_path, monkeypatch):
 
 
 def test_too_little_memory_is_said(run):
-    status, out, err = run("prove", K09, "--rotation", "golden", "--memory", "1e-6")
+    status, out, err = run(K09, "--rotation", "golden", "--memory", "1e-6")
     assert (status, err) == (1, "") and "THEOREM" not in out
     assert "GB of memory, and 1e-06 GB may be used By hand --memory;" in flat(out)
 
@@ -138,11 +138,11 @@ def test_a_circle_beyond_a_gap_is_proved(run, tmp_path, rotation):
     """At K1 = 0.30 there is none, and none is found."""
     problem = tmp_path / "mine.json"
     problem.write_text(MINE % ("0.42", "0.42"))
-    status, out, err = run("prove", problem, *rotation)
+    status, out, err = run(problem, *rotation)
     assert status == 0 and "V(y) = 0.42 cos y + 0.2 cos(2 y)" in out
     assert not rotation or "= [0; 4, 4, 1, 1, ...]" in out
     problem.write_text(MINE % ("0.30", "0.30"))
-    status, out, err = run("prove", problem)
+    status, out, err = run(problem)
     assert (status, err) == (1, "")
     assert "Not found  at K1 = 0.3 no orbit is seen that is regular and not resonant" in out
 
@@ -155,30 +155,30 @@ def test_beyond_the_last_torus_there_is_no_theorem(run, tmp_path, numbers, rotat
     problem = tmp_path / "beyond.in"
     problem.write_text("".join("%s 0\n" % x for x in numbers) + "1 1\n1 1\n")
     points = ["--points", "65536"] * (TORTURE == 1)
-    status, out, err = run("prove", problem, "--rotation", rotation, *points)
+    status, out, err = run(problem, "--rotation", rotation, *points)
     assert (status, err) == (1, "") and "THEOREM" not in out
     assert "\nNot found  no torus" in out
 
 
 @pytest.mark.parametrize("arguments,words", [
-    ([], "COMMAND"), (["prove", "nowhere.in", "--rotation", "golden"], "nowhere.in"),
-    (["prove", TRIG, "--rotation", "golden"], "two angles"),
-    (["prove", K09, "--rotation", "T49"], "one angle"),
-    (["prove", K09, "--rotation", "t^2-1: t"], "reducible"),
-    (["prove", K09, "--rotation", "0.618x"], "not a rotation vector"),
-    (["prove", K09, "--rotation", "golden", "--memory", "x"], "'x'"),
-    (["prove", RANGE, "--rotation", "T49"], "--together"),
-    (["prove", "two.json", "--rotation", "golden"], "2 parameters"),
-    (["prove", "two.json", "--rotation", "golden", "--together"], "--together"),
-    (["prove", "zero.in", "--rotation", "golden"], "V is 0"),
-    (["prove", K09, "--rotation", "golden", "--rho", "0.1"], "--rho"),
-    (["prove", K09, "--rotation", "golden", "--memory", "-1"], "above 0"),
-    (["prove", K09, "--rotation", "golden", "-b", "zero.in"], "zero.in: exists"),
-    (["prove", K09, "--rotation", "golden", "-b", "."], "is a directory"),
-    (["prove", K09, "--rotation", "golden", "-b", "no/where"], "no/where"),
-    (["prove", K09, "--rotation", "golden", "-g", "a.txt"], "the name of the figure ends in"),
-    (["prove", K09, "--rotation", "golden", "-b", "a.svg", "-g", "a.svg"], "would overwrite"),
-    (["prove", K09, "--rotation", "golden", "-r", "zero.in"], "zero.in"),
+    (["nowhere.in", "--rotation", "golden"], "nowhere.in"),
+    ([TRIG, "--rotation", "golden"], "two angles"),
+    ([K09, "--rotation", "T49"], "one angle"),
+    ([K09, "--rotation", "t^2-1: t"], "reducible"),
+    ([K09, "--rotation", "0.618x"], "not a rotation vector"),
+    ([K09, "--rotation", "golden", "--memory", "x"], "'x'"),
+    ([RANGE, "--rotation", "T49"], "--together"),
+    (["two.json", "--rotation", "golden"], "2 parameters"),
+    (["two.json", "--rotation", "golden", "--together"], "--together"),
+    (["zero.in", "--rotation", "golden"], "V is 0"),
+    ([K09, "--rotation", "golden", "--rho", "0.1"], "--rho"),
+    ([K09, "--rotation", "golden", "--memory", "-1"], "above 0"),
+    ([K09, "--rotation", "golden", "-b", "zero.in"], "zero.in: exists"),
+    ([K09, "--rotation", "golden", "-b", "."], "is a directory"),
+    ([K09, "--rotation", "golden", "-b", "no/where"], "no/where"),
+    ([K09, "--rotation", "golden", "-g", "a.txt"], "the name of the figure ends in"),
+    ([K09, "--rotation", "golden", "-b", "a.svg", "-g", "a.svg"], "would overwrite"),
+    ([K09, "--rotation", "golden", "-r", "zero.in"], "zero.in"),
 ])
 def test_bad_usage_is_a_line(run, tmp_path, monkeypatch, arguments, words):
     monkeypatch.chdir(tmp_path)
@@ -192,23 +192,23 @@ def test_bad_usage_is_a_line(run, tmp_path, monkeypatch, arguments, words):
     (["--margin", "1e300"], "the margin, 1e+300, is not from 1 to 1e+100"),
     (["--margin", "1e-300"], "the margin, 1e-300, is not from")])
 def test_what_the_library_refuses_is_a_line(run, arguments, words):
-    status, out, err = run("prove", K09, "--rotation", "golden", *arguments)
+    status, out, err = run(K09, "--rotation", "golden", *arguments)
     assert status == 2 and one_line(err) and words in err and "THEOREM" not in out
 
 
 def test_flags_that_may_be_the_reason_are_named(run, monkeypatch):
     monkeypatch.setattr(tori, "prove", lambda *_, **__: (_ for _ in ()).throw(
         tori.NotProved("it lacks")))
-    _, out, _ = run("prove", K09, "--rotation", "golden", "--memory", "1", "--points", 1 << 18)
+    _, out, _ = run(K09, "--rotation", "golden", "--memory", "1", "--points", 1 << 18)
     assert "\nNot proved it lacks\nBy hand    --points, --memory; without such a flag the " \
         "program chooses\n" in out
-    _, out, _ = run("prove", K09, "--rotation", "golden")
+    _, out, _ = run(K09, "--rotation", "golden")
     assert "\nNot proved it lacks\nRotation   golden, " in out
 
 
 def test_each_step_of_a_long_run_is_told(run, monkeypatch):
     monkeypatch.setattr(cli, "QUIET_SECONDS", -1)
-    status, _, err = run("prove", K09, "--rotation", "golden")
+    status, _, err = run(K09, "--rotation", "golden")
     assert status == 0 and all(map(one_line, err.splitlines(keepends=True)))
     steps = iter(err.splitlines())      # in this order
     for words in ("looking for the torus of an orbit, on ", "refining a torus of ",
@@ -221,7 +221,7 @@ def test_an_interrupt_leaves_nothing(run, tmp_path, monkeypatch):
         raise KeyboardInterrupt
     monkeypatch.setattr(tori, "prove", strike)
     file = tmp_path / "golden.torus"
-    status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
+    status, out, err = run(K09, "--rotation", "golden", "-b", file)
     assert status == 130 and one_line(err) and "interrupted" in err
     assert "THEOREM" not in out and not file.exists()
 
@@ -252,7 +252,7 @@ def test_a_signal_ends_all_processes(tmp_path, number):
             with open(%r, "wb", 0) as file:
                 file.write(b"verifying")
                 time.sleep(600)""" % str(pipe))
-    run = subprocess.Popen([sys.executable, "-c", code, "prove", str(problem), "--rotation",
+    run = subprocess.Popen([sys.executable, "-c", code, str(problem), "--rotation",
                             "golden", "--jobs", "2", "-b", str(file)], text=True,
                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     with open(pipe, "rb", 0) as told:
@@ -280,7 +280,7 @@ def test_a_process_that_dies_is_told(tmp_path):
                 open("one", "w").close()
                 time.sleep(600)
             os.kill(os.getpid(), signal.SIGKILL)""")
-    run = subprocess.run([sys.executable, "-c", code, "prove", "range.in", "--rotation", "golden",
+    run = subprocess.run([sys.executable, "-c", code, "range.in", "--rotation", "golden",
                           "--jobs", "2"], text=True, capture_output=True, cwd=tmp_path, timeout=300)
     assert run.returncode == 2 and "THEOREM" not in run.stdout
     assert one_line(run.stderr) and "died, perhaps for lack of memory" in run.stderr
@@ -289,7 +289,7 @@ def test_a_process_that_dies_is_told(tmp_path):
 def test_the_time_limit(run, tmp_path, monkeypatch):
     """It ends the search, or the check; the torus that was found is there, and is a start."""
     file, found = tmp_path / "golden.torus", tmp_path / "golden.torus.found"
-    given = "prove", K09, "--rotation", "golden", "-b", file
+    given = K09, "--rotation", "golden", "-b", file
     status, out, err = run(*given, "--time-limit", "0")
     assert status == 1 and out.startswith("UNDECIDED: nothing is proved.") and not err
     assert "\nTime limit the 0 seconds of the time limit are over; the next step was: " in out
@@ -327,13 +327,13 @@ def test_a_certificate_is_one_runs_alone(run, tmp_path):
     that is there stays."""
     file = tmp_path / "golden.torus"
     with files.Lock(str(file)):
-        status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
+        status, out, err = run(K09, "--rotation", "golden", "-b", file)
     assert (status, out) == (2, "") and one_line(err) and "another run is writing" in err
     assert not list(tmp_path.iterdir())
-    status, *_ = run("prove", K09, "--rotation", "golden", "-b", file)
+    status, *_ = run(K09, "--rotation", "golden", "-b", file)
     assert status == 0 and [each.name for each in tmp_path.iterdir()] == [file.name]
     before = file.read_bytes()
-    status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
+    status, out, err = run(K09, "--rotation", "golden", "-b", file)
     assert (status, out) == (2, "") and "exists" in err and file.read_bytes() == before
 
 
@@ -342,7 +342,7 @@ def test_a_report_of_a_range_says_of_which_piece_it_speaks(run, tmp_path):
     """The residual of the piece with the least margin need not be the largest."""
     problem = tmp_path / "standard.in"
     problem.write_text("0.45 0.35\n0 0\n0 0\n1 1\n1 1\n")
-    status, out, err = run("prove", problem, "--rotation", "golden")
+    status, out, err = run(problem, "--rotation", "golden")
     assert (status, err) == (0, "")
     pieces, of_one = out.partition("THEOREM")[2].split("The lines below are about the piece with")
     (cut,) = re.findall(" -1 <= s <= ([0-9.]+): ", pieces)
@@ -366,7 +366,7 @@ def test_the_report_says_for_which_k_divisors_are_bounded(waves, words):
 def test_without_python_flint(tmp_path):
     code = ("import sys; sys.modules['flint'] = None\n"
             "from converse.commands.tori import main\n"
-            "sys.exit(main(['prove', %r, '--rotation', 'golden']))" % K09)
+            "sys.exit(main([%r, '--rotation', 'golden']))" % K09)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (2, "") and one_line(done.stderr)
     assert "pip install 'converse-kam[tori]'" in done.stderr
@@ -406,6 +406,6 @@ def test_a_range_is_told_exactly():
 def test_a_figure(run, tmp_path):
     figure, problem = tmp_path / "torus.png", tmp_path / "standard.in"
     problem.write_text("0.3 0.01\n0 0\n0 0\n1 1\n1 1\n")
-    status, out, err = run("prove", problem, "--rotation", "golden", "-g", figure)
+    status, out, err = run(problem, "--rotation", "golden", "-g", figure)
     assert (status, err) == (0, "") and figure.read_bytes().startswith(b"\x89PNG")
     assert "  for every a in [0.29, 0.31].\n" in out

@@ -159,11 +159,11 @@ def command(capsys, *arguments):
 
 def test_find_writes_points_and_begins_at_them(tmp_path, capsys):
     a, b = tmp_path / "a.npz", tmp_path / "b.npz"
-    assert command(capsys, "find", "trig", "5,7/9", "0.02", "0.03", "--points", a)[0] == 0
+    assert command(capsys, "trig", "5,7/9", "0.02", "0.03", "--points", a)[0] == 0
     family = orbits.Family.load(a)
     direct = orbits.follow(orbits.trig, (5, 7), 9, [0.02, 0.03])
     assert all(map(same, family, direct))
-    status, out, _ = command(capsys, "find", "trig", "5,7/9", "0.031", "--from", a, "--points", b)
+    status, out, _ = command(capsys, "trig", "5,7/9", "0.031", "--from", a, "--points", b)
     assert status == 0
     further, = orbits.follow(orbits.trig, (5, 7), 9, [0.031], start=family[1])
     assert same(orbits.Family.load(b)[0], further) and "%.12g" % further.action in out
@@ -174,7 +174,7 @@ def test_from_keeps_a_branch_that_continuation_does_not_reach(tmp_path, capsys):
     followed = orbits.follow(orbits.trig, (12, 16), 21, [0.03])[0]
     assert best.label == "minimum" and abs(best.action - followed.action) > 1e-6
     best.save(tmp_path / "best.npz")
-    status, out, _ = command(capsys, "find", "trig", "12,16/21", "0.03", "--from",
+    status, out, _ = command(capsys, "trig", "12,16/21", "0.03", "--from",
                              tmp_path / "best.npz")
     assert status == 0 and "%.12g" % best.action in out
 
@@ -190,7 +190,7 @@ def test_bad_use_of_points(tmp_path, capsys):
             (("trig", "5,7/9", "0.02", "--from", tmp_path / "no"), "cannot be read"),
             (("trig", "5,7/9", "0.02", "--points", tmp_path / "else.npz"), "exists and is not"),
             (("trig", "5,7/9", "100", "--from", a), "too far to be followed")):
-        status, out, err = command(capsys, "find", *arguments)
+        status, out, err = command(capsys, *arguments)
         assert status == 2 and words in err and err.count("\n") == 1 and not out, arguments
     assert (tmp_path / "else.npz").read_text() == "mine\n"
     state = orbits.Family.load(a)[0]

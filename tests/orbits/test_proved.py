@@ -515,7 +515,7 @@ def test_without_python_flint():
             "try: orbits.prove(state)\n"
             "except ConverseError as error: print(error)\n"
             "from converse.commands.orbits import main\n"
-            "sys.exit(main(['find', 'standard', '1/3', '0.5', '--prove']))")
+            "sys.exit(main(['standard', '1/3', '0.5', '--prove']))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 2 and done.stdout.count("\n") == done.stderr.count("\n") == 1
     for said in done.stdout, done.stderr:
