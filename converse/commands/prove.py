@@ -6,10 +6,11 @@ import math
 import os
 import sys
 import time
+from dataclasses import fields
 
 from ..model.exact import decimal_text
 from ..prover.report import header, verdict
-from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED
+from ..prover.settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
@@ -57,9 +58,6 @@ def parser():
         % MAP))
     p.add_argument("input", nargs="?", help="input file, the thesis's or JSON; standard input if "
                    "it is - or left out; not needed with -r")
-    p.add_argument("-d", "--depth", type=whole_number(0), metavar="N",
-                   help="give up on a prism that was cut N times (default %d; loewner: %d)"
-                   % (METHODS["thesis"], METHODS["loewner"]))
     p.add_argument("-b", "--backup", metavar="FILE",
                    help="save progress to the new file FILE; when the run ends, it is the proof "
                    "file")
@@ -70,17 +68,16 @@ def parser():
     p.add_argument("-g", "--graphics", metavar="FILE",
                    help="draw the prisms in FILE: SVG, PNG, PDF or PostScript (.ps, .eps) by its "
                         "name; 'off': no figure (default)")
-    p.add_argument("-p", "--precision", dest="digits", type=whole_number(1), metavar="DP",
-                   help="decimal places of the thesis's rigorous arithmetic (default 35)")
-    p.add_argument("-s", "--stubborn", action="store_true", default=None,
-                   help="go on after a prism that cannot be decided")
     p.add_argument("-t", "--verbose", action="store_true",
                    help="print a line for every decided prism")
-    p.add_argument("--as-printed", action="store_true", default=None,
-                   help="follow the thesis's listing to the letter; not a proof")
-    p.add_argument("--method", choices=tuple(METHODS),
-                   help="the thesis's criterion (default of an input with ranges of a, b and c), "
-                   "or the sharper one, in rigorous double precision (default of any other)")
+    for each in fields(Settings):
+        how = {key: value for key, value in each.metadata.items()
+               if key in ("help", "metavar", "choices")}
+        if "least" in each.metadata:
+            how["type"] = whole_number(each.metadata["least"])
+        elif isinstance(each.default, bool):
+            how["action"] = "store_true"
+        p.add_argument(*each.metadata["flags"], dest=each.name, default=None, **how)
     p.add_argument("--together", action="store_true",
                    help=TOGETHER + " (loewner)")
     p.add_argument("--xstar", nargs=2, type=_decimal, metavar=("X0", "X1"),
@@ -139,8 +136,7 @@ def run(options):
         options.stdin = sys.stdin.fileno()
     check_figure(options, options.input, options.backup, options.restore, options.stdin,
                  prisms=True)
-    given = {name: value for name, value in vars(options).items() if value is not None and
-             name in ("method", "depth", "digits", "stubborn", "as_printed")}
+    given = {each.name: getattr(options, each.name) for each in fields(Settings)}
     if options.backup is not None:
         files.check_writable(options.backup, regular=True)
         files.check_new(options.backup, options.restore)
@@ -152,7 +148,7 @@ def run(options):
     if options.restore is None:
         problem = read_problem(options.input, together=options.together)
         if problem.by_ranges and not options.together:      # an input of 1989
-            given.setdefault("method", "thesis")
+            given["method"] = given["method"] or "thesis"
     elif options.input or options.together:
         raise ConverseError("-r continues a run as it was asked for; leave out the input and "
                             "--together")

@@ -7,13 +7,12 @@ from ..version import __version__
 from . import tree
 
 
-def continued(proof, name, depth=None, stubborn=None):
-    """The proof with the settings to continue it with; None: those that it has.
+def continued(proof, name, changes):
+    """The proof with such changes of its settings, by name, to continue it with.
 
     ConverseError: it cannot be continued so; the message calls the proof by `name`."""
     proof = _without_unused(proof, name)
-    settings = replace(proof.settings, **{key: value for key, value in (
-        ("depth", depth), ("stubborn", stubborn)) if value is not None})
+    settings = replace(proof.settings, **changes)
     deeper = settings.depth > proof.settings.depth
 
     def differs(what, theirs, ours):

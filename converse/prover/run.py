@@ -7,7 +7,7 @@ import os
 import time
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, Callable, Dict, Optional, Tuple, Union
+from typing import Any, Callable, Optional, Tuple, Union
 
 from ..model.exact import Number, decimal_text, exact
 from ..model.map import SymplecticMap
@@ -23,7 +23,7 @@ from .native import Counts, Task
 from .orbit_length import longest
 from .proof import Proof, Tree
 from .resume import continued, counted
-from .settings import LENGTH, Settings
+from .settings import LENGTH, MAY_CHANGE, Settings
 from .shared import Shared
 from .starts import MAX_PROOF_LEAVES, has_width, plan
 from .workers import Deadline, WorkerPool, check_options, count_workers
@@ -37,24 +37,20 @@ MANY_TRIES = 10000
 ALONE_SECONDS, ALONE_RATIO = 0.1, 10
 
 
-def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optional[str] = None,
-          depth: Optional[int] = None, digits: Optional[int] = None,
-          stubborn: Optional[bool] = None, as_printed: Optional[bool] = None,
+def prove(source: Union[SymplecticMap, Problem, None] = None, *,
           xstar: Optional[Tuple[Number, Number]] = None,
           jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
           backup: Optional[Path] = None, resume: Union[Proof, Path, None] = None,
           time_limit: float = math.inf, cpu_limit: float = math.inf,
           on_begin: Optional[Callable[[Proof], None]] = None,
           progress: Optional[Callable[[float, Counts], None]] = None,
-          on_leaf: Optional[Callable[[tree.Leaf, int], None]] = None) -> Proof:
+          on_leaf: Optional[Callable[[tree.Leaf, int], None]] = None, **settings: Any) -> Proof:
     """Tries to prove that a map, or a family of maps, has no invariant tori.
 
     Parameters
     ----------
     source : SymplecticMap or Problem, optional
         The maps; or a Problem, which also says where x_1 is looked for.
-    method, depth, digits, stubborn, as_printed : optional
-        See Settings.  `digits` and `as_printed`, which only the thesis's method has, choose it.
     xstar : tuple of two exact numbers, optional
         The angles of x*, in radians.  By default the program chooses them.
     jobs : int, optional
@@ -81,6 +77,9 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
     on_leaf : callable, optional
         on_leaf(leaf, points) is called for every leaf that this run decides, in preorder; `points`
         is the length of its orbit.
+    settings : optional
+        Those of Settings, by name: method, depth, digits, stubborn, as_printed.  None is no choice.
+        `digits` and `as_printed`, which only the thesis's method has, choose it.
 
     Returns
     -------
@@ -100,31 +99,24 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
         The backup cannot be written now, and will be tried again.  NotSaved, one of these: it could
         not be written in the end.
     """
-    given: Dict[str, Any] = {name: value for name, value in (
-        ("method", method), ("depth", depth), ("digits", digits), ("stubborn", stubborn),
-        ("as_printed", as_printed)) if value is not None}
+    given = {name: value for name, value in settings.items() if value is not None}
     check_options(jobs, executor)
     deadline = Deadline(time_limit, cpu_limit)
     file = None if resume is None or isinstance(resume, Proof) else resume
     name = "the proof to resume" if file is None else os.fspath(file)
     if resume is not None:
-        if source is not None or xstar is not None or not set(given) <= {"depth", "stubborn"}:
+        if source is not None or xstar is not None or not set(given) <= MAY_CHANGE:
             raise ValueError("a proof is continued as it was asked for, only deeper or more "
                              "stubbornly; leave out the map, x* and the method")
     elif source is None:
         raise TypeError("there must be a map or a problem, or a proof to resume")
     else:
-        if digits is not None or as_printed:
-            given.setdefault("method", "thesis")
-        if digits is not None and method == "loewner":
-            raise ValueError("digits (-p) are of the thesis's arithmetic, and the method loewner "
-                             "works in doubles; leave one of them out")
         before = Proof((Tree(Problem.of(source), None if xstar is None else _point(xstar)),),
-                       Settings(**given))
+                       Settings.of(given))
     with interruptible(), Backup(file if backup is None else backup, resumed=file) as backup_file:
         if resume is not None:
             proof = resume if isinstance(resume, Proof) else Proof.load(resume)
-            before = continued(proof, name, depth, stubborn)
+            before = continued(proof, name, given)
         before = ready(before)
         if on_begin is not None:
             on_begin(before)

@@ -226,7 +226,7 @@ def test_the_sharper_method(run, root, tmp_path):
     (["-b", ""], "the name of a file is empty"), ([""], "the name of the input file is empty"),
     (["-r", ""], "the name of a file is empty"), (["-b", "."], "is a directory"),
     (["-d", "\u0663"], "is not a whole number"),
-    (["-p", "40", "--method", "loewner"], "(-p) are of the thesis's arithmetic"),
+    (["-p", "40", "--method", "loewner"], "(--precision) is of the method thesis alone"),
     (["/missing/file.in"], "/missing/file.in"), (["/"], "/"),
 ])
 def test_bad_usage(run, arguments, word):

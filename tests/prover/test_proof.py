@@ -707,5 +707,5 @@ def test_whole_numbers_are_those_of_numpy_too():
 
 def test_the_method_of_settings_is_that_of_prove():
     assert Settings().method == prove(LINE).method == "loewner"
-    with pytest.raises(ValueError, match=r"digits \(-p\) are of the thesis's arithmetic"):
+    with pytest.raises(ValueError, match=r"digits \(--precision\) is of the method thesis alone"):
         prove(LINE, method="loewner", digits=20)
