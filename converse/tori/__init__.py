@@ -12,7 +12,6 @@ try:
     from .nearest import nearest
     from .proved import NotProved, ProvedTorus, prove
     from .rotation import Rotation, read_rotation
-    from .scan import Seen, scan
     from .torus import Strip, Torus
 except ImportError as _error:           # said when something is asked for: the command needs a line
     _MISSING = ("converse.tori needs numpy and python-flint (%s); pip install 'converse-kam[tori]'"
@@ -24,5 +23,5 @@ except ImportError as _error:           # said when something is asked for: the 
             raise AttributeError(name)
         raise ConverseError(_MISSING)
 
-__all__ = ["Certificate", "NotFound", "NotProved", "ProvedTorus", "Rotation", "Seen", "Strip",
-           "TimeIsUp", "Torus", "find", "nearest", "prove", "read", "read_rotation", "scan"]
+__all__ = ["Certificate", "NotFound", "NotProved", "ProvedTorus", "Rotation", "Strip", "TimeIsUp",
+           "Torus", "find", "nearest", "prove", "read", "read_rotation"]

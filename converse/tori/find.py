@@ -224,12 +224,8 @@ class Search:
                 pass
             if len(made) == ENOUGH:
                 break
-        return seen, min(made, key=points_of, default=None)
-
-
-def points_of(made: Tuple[Way, Found]) -> int:
-    """Of the grid on which a torus is to be refined."""
-    return plan(made[1]).mesh(made[1].mesh).points
+        return seen, min(made, key=lambda each: plan(each[1]).mesh(each[1].mesh).points,
+                         default=None)
 
 
 def _doubles(numbers):

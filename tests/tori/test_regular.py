@@ -99,16 +99,3 @@ def test_a_rotation_number_is_taken_near_a_place():
 def test_a_range_takes_the_vector_of_its_stronger_end():
     pieces = find(two_harmonics(("0.41", "0.42")))
     assert [torus.piece[0] for torus in pieces][0] == -1 and pieces[-1].piece[1] == 1
-
-
-def test_a_grid_of_values_is_scanned():
-    """Circles come back: the values at which they are seen are no interval."""
-    found = list(tori.scan(two_harmonics(("0.2", "0.6")), ["0.2", "0.3", "0.42"], points=1 << 14))
-    assert [bool(each.orbits) for each in found] == [True, False, True]
-    assert [each.rotation is not None for each in found] == [True, False, True]
-    assert [each.value for each in found] == [Fraction("0.2"), Fraction("0.3"), Fraction("0.42")]
-    assert found[1].size == 0 < found[2].size < found[0].size
-    with pytest.raises(ValueError, match="0 named parameters with a range"):
-        next(tori.scan(StandardMap("0.9")))
-    with pytest.raises(ValueError, match="values is 1"):
-        next(tori.scan(StandardMap(("0.9", 1)), 1))
