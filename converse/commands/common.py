@@ -2,7 +2,6 @@
 
 import argparse
 import contextlib
-import logging
 import math
 import os
 import re
@@ -11,12 +10,9 @@ import sys
 import time
 import warnings
 
-from ..model.exact import exact
-from ..model.inputs import read_input
 from ..prover.settings import LIMIT
-from ..prover.workers import WorkersGone
 from ..storage import files
-from ..storage.files import ConverseError, NotSaved, plain
+from ..storage.files import ConverseError, NotSaved, WorkersGone, plain
 from ..storage.signals import ENDING, interruptible
 
 BAD, ENDED_BY = 2, 128                  # exit statuses; the signal's number is added to the second
@@ -77,6 +73,7 @@ def whole_number(least, most=LIMIT):
 
 def number(text):
     """The type of an argument that is an exact number."""
+    from ..model.exact import exact  # late, as all that --help and --version do without
     try:
         return exact(text)
     except ValueError as error:
@@ -185,6 +182,7 @@ def executor_of(options):
     if options.dask is None:
         yield None
     else:
+        import logging
         try:
             from distributed import Client
         except ImportError:
@@ -207,6 +205,8 @@ def executor_of(options):
 def read_problem(name, command="converse", together=False):
     """The Problem in an input file, or in standard input if the name is None or -.  together: a, b
     and c move together."""
+    from ..model.inputs import read_input
+
     source = name
     if source in (None, "-"):
         source = sys.stdin

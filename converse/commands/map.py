@@ -5,8 +5,6 @@ import os
 import re
 import sys
 
-from ..diagram import Diagram
-from ..model.exact import exact
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
@@ -30,6 +28,8 @@ ENDING = ending(
 
 
 def _budget(text):
+    from ..model.exact import exact
+
     number, unit = BUDGET.fullmatch(text).groups()
     try:
         seconds = exact(number) * UNITS[unit]
@@ -78,6 +78,7 @@ def run(options):
             raise ConverseError("%s: is a diagram; to continue it, give -r %s and no input" % (
                 (options.input,) * 2))
         kept = options.input
+        from ..diagram import Diagram
         found = Diagram.load(kept)
     else:
         found = _search(options, kept)

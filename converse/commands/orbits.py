@@ -7,8 +7,6 @@ import os
 import re
 import sys
 
-from ..model.exact import exact
-from ..model.map import SymplecticMap
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
@@ -35,6 +33,7 @@ NO_MINIMUM = "saddle", "stationary", "not stationary"
 
 def _eps(text):
     """'0.01' or 'LOW:HIGH:STEP': a list of floats."""
+    from ..model.exact import exact
     try:
         ends = [exact(word.strip()) for word in text.split(":")]
         if len(ends) not in (1, 3) or not all(abs(x) < 10 ** 9 for x in ends):
@@ -62,6 +61,7 @@ def _vector(text):
 
 def _value(text):
     """'K=0.6': ('K', 0.6), exactly."""
+    from ..model.exact import exact
     name, _, number = text.partition("=")
     try:
         return name.strip(), exact(number.strip())
@@ -72,7 +72,7 @@ def _value(text):
 
 def read_potential(source, at=()):
     """One of those with a name, or that of an input file, with its parameters at these values."""
-    from converse import orbits
+    from converse import SymplecticMap, orbits
 
     if source in POTENTIALS:
         if at:

@@ -1,9 +1,7 @@
 """The command: converse-portrait [INPUT] [-b FILE] [-g FILE]."""
 
 import sys
-from fractions import Fraction
 
-from ..model.exact import rounded_text
 from ..storage.files import ConverseError
 from ..version import __version__
 from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
@@ -100,7 +98,10 @@ def _rotations(texts):
 
 def _tori(rotations, problem):
     """The circles that are proved; what is not is told."""
+    from fractions import Fraction
+
     from .. import tori
+    from ..model.exact import rounded_text
 
     proved = []
     for rotation in rotations:

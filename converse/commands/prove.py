@@ -8,8 +8,6 @@ import sys
 import time
 from dataclasses import fields
 
-from ..model.exact import decimal_text
-from ..prover.report import header, verdict
 from ..prover.settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
 from ..storage import files
 from ..storage.files import ConverseError
@@ -46,6 +44,7 @@ class ListInputs(argparse.Action):
 
 
 def _decimal(text):
+    from ..model.exact import decimal_text
     try:
         return decimal_text(number(text))
     except ValueError as error:
@@ -114,9 +113,10 @@ class Progress:
         """Called by prove() as the search goes on."""
         if not self.options.begun:
             self.options.begun = True
+            from ..prover import report
             if self.begun.as_printed:
                 tell("--as-printed is a historical reconstruction, not a proof")
-            say(header(self.begun))
+            say(report.header(self.begun))
         self.line(lambda: self._words(examined, counts))
 
     def _words(self, examined, counts):
@@ -128,6 +128,7 @@ class Progress:
 
 
 def run(options):
+    from ..prover.report import verdict
     from ..prover.run import prove  # it needs the C core, and says so where it is missing
 
     if options.graphics == "off":

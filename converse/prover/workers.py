@@ -13,7 +13,7 @@ import warnings
 from dataclasses import dataclass, replace
 from typing import Any, Callable
 
-from ..storage.files import ConverseError
+from ..storage.files import ConverseError, WorkersGone
 from ..storage.signals import Resource, postponed
 from ..version import __version__
 from .settings import whole_number
@@ -23,10 +23,6 @@ ATTEMPTS = 4                        # at a task whose workers die
 ASK_SECONDS = 1.0                   # between two questions to a Dask scheduler
 # Evaluated by a Dask worker, on which the package may be missing.
 PROBE = "__import__('converse.prover.native').__version__"
-
-
-class WorkersGone(ConverseError):
-    """No worker is left to do the work, or none can; the results until then stand."""
 
 
 def count_workers(executor=None):

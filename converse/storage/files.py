@@ -3,7 +3,6 @@
 import contextlib
 import fcntl
 import os
-import tempfile
 import zlib
 from typing import Union
 
@@ -14,6 +13,10 @@ Path = Union[str, "os.PathLike[str]"]
 
 class ConverseError(RuntimeError):
     """Something outside the mathematics went wrong; the text is one plain sentence."""
+
+
+class WorkersGone(ConverseError):
+    """No worker is left to do the work, or none can; the results until then stand."""
 
 
 class NotSaved(RuntimeWarning):
@@ -28,6 +31,8 @@ def plain(text):
 
 def verified(value, jobs):
     """The check.Result of converse-check's code for a value that has save()."""
+    import tempfile
+
     from .. import check
 
     with tempfile.TemporaryDirectory() as directory:
