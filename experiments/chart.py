@@ -26,7 +26,7 @@ import sides
 import converse
 from converse.commands.common import Parser, ended
 from converse.draw import plot
-from converse.model.map import LINE
+from converse.model.map import LINE, MuldoonMap
 from converse.model.problem import Problem
 from converse.storage import files
 from converse.storage.files import ConverseError
@@ -77,12 +77,11 @@ METHODS = {"thesis": ("the thesis's method", plot.DARK),
 def on_line(low, high=None, together=False):
     """The problem for epsilon from low to high, both given as decimals; by default low alone."""
     low, high = (LINE * Fraction(x) for x in (low, high or low))
-    return _problem((low + high) / 2, (high - low) / 2, together)
+    return _problem(low, high, together)
 
 
-def _problem(centre, half, together=False):
-    return Problem.around((centre, centre, 2 * centre, 1, 1), (half, half, 2 * half, 1, 1),
-                          together=together)
+def _problem(low, high, together=False):
+    return Problem(MuldoonMap((low, high), (low, high), (2 * low, 2 * high), together=together))
 
 
 def timed(problem, **options):
@@ -103,7 +102,8 @@ def bound(quick):
     for epsilon, seconds in SUN:
         yield "1989", epsilon, seconds, "1989"
     for epsilon, centre in BOXES:
-        yield _bound_row("thesis", epsilon, _problem(Fraction(centre), Fraction("0.00125")))
+        yield _bound_row("thesis", epsilon, _problem(*(
+            Fraction(centre) + sign * Fraction("0.00125") for sign in (-1, 1))))
     for epsilon in BOUNDS:
         if not quick or float(epsilon) >= QUICK["bound"]:
             yield _bound_row("no torus", epsilon, on_line(epsilon, TOP, together=True),

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 import converse
-from converse import Counts, Problem, Proof, Settings, Tree
+from converse import Counts, MuldoonMap, Problem, Proof, Settings, Tree
 
 from moments import PATIENCE
 from truth import TORTURE
@@ -97,12 +97,19 @@ def command(start):
     return command
 
 
+def around(centre, half, comments=(), together=False):
+    """The problem of five centres and half-widths: of a, b, c, v0 and v1."""
+    ranges = [(Fraction(c) - Fraction(h), Fraction(c) + Fraction(h))
+              for c, h in zip(centre, half)]
+    return Problem(MuldoonMap(*ranges[:3], together=together), *ranges[3:], comments)
+
+
 @pytest.fixture(scope="session")
 def made_up():
     """A proof from a tree that the test makes up; its other numbers serve the format only."""
     def made_up(tree, a="0.3085", v=("1", "1", "1", "1"), comments=(), counts=None, **options):
         a, (c0, c1, h0, h1) = Fraction(a), map(Fraction, v)
-        problem = Problem.around((a, a, 2 * a, c0, c1),
+        problem = around((a, a, 2 * a, c0, c1),
                                  ("0.00125", "0.00125", "0.0025", h0, h1), comments)
         counts = counts or Counts(cuts=tree.count("0") + tree.count("1"), proved=tree.count("P"),
                                   symmetric=tree.count("S"), undecided=tree.count("U"))

@@ -15,6 +15,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple, Tuple, Union
 
 MAX_EXPONENT = 300                      # A number is 0 or from 10^-300 to 10^300 in size.
+LEAST, LARGEST = Fraction(1, 10 ** MAX_EXPONENT), Fraction(10 ** MAX_EXPONENT)
 EXPONENT_DIGITS = 9                     # Decimals of longer exponents are errors of decimal.
 SHOWN = 20                              # An Interval or a number of a line has 20 digits at most.
 FEWEST, MOST = 6, 10000                 # short_text() tries 6, 12, 24, ... digits.
@@ -74,7 +75,7 @@ def exact(x: Number) -> Fraction:
         except TypeError:
             raise TypeError("%.200r is not an exact number: give an int, a Fraction, a Decimal or "
                             "a string such as '0.3085' or '63/64'" % (x,)) from None
-    return _in_range(x, number_text(x))
+    return _in_range(x)
 
 
 def integer(x: Any) -> int:
@@ -95,7 +96,7 @@ def is_integer(x: Any) -> bool:
 
 def _parsed(text):
     if ratio := RATIO.fullmatch(text):      # Decimals have no limit of digits, as int() has
-        return _in_range(Fraction(*(int(Decimal(part)) for part in ratio.groups())), text)
+        return _in_range(Fraction(*(int(Decimal(part)) for part in ratio.groups())))
     number = DECIMAL.fullmatch(text)
     if not number:
         raise ValueError("%r is not a decimal number" % text[:40])
@@ -104,9 +105,9 @@ def _parsed(text):
     return Fraction(Decimal(text))
 
 
-def _in_range(value, text):
-    if value and not Fraction(1, 10 ** MAX_EXPONENT) <= abs(value) <= 10 ** MAX_EXPONENT:
-        raise _out_of_range(text)
+def _in_range(value):
+    if value and not LEAST <= abs(value) <= LARGEST:
+        raise _out_of_range(number_text(value))
     return value
 
 

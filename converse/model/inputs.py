@@ -8,7 +8,7 @@ from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from typing import IO, NoReturn, Union
 
 from .exact import exact
-from .map import MOST_CHARACTERS, affine
+from .map import MOST_CHARACTERS, MuldoonMap, affine
 from .problem import InputError, Problem
 
 LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documentation calls them
@@ -87,7 +87,7 @@ def _number(text):
 
 def _five_lines(text, name):
     lines = text.rstrip("\n").split("\n")
-    centre, half = [], []
+    ranges = []
     used = 0
 
     def fail(wrong: object, remedy: str) -> NoReturn:
@@ -98,7 +98,7 @@ def _five_lines(text, name):
         while used < len(lines) and not lines[used].strip():
             used += 1
         if used == len(lines):
-            fail("the input is empty" if not centre else "the input ends too early", want)
+            fail("the input is empty" if not ranges else "the input ends too early", want)
         words = lines[used].split()
         used += 1
         try:
@@ -110,8 +110,7 @@ def _five_lines(text, name):
                  % (len(values), "" if len(values) == 1 else "s"), want)
         if values[1] < 0:
             fail("the half-width %s is negative" % words[1], want + ", which is 0 or more")
-        centre.append(values[0])
-        half.append(values[1])
+        ranges.append((values[0] - values[1], values[0] + values[1]))
 
     comments = [line.rstrip() for line in lines[used:]]
     while comments and not comments[0]:
@@ -119,7 +118,7 @@ def _five_lines(text, name):
     while comments and not comments[-1]:
         comments.pop()
     try:
-        return Problem.around(centre, half, comments)
+        return Problem(MuldoonMap(*ranges[:3]), *ranges[3:], comments)
     except ValueError as error:
         raise InputError("%s: %s" % (name, error)) from None
 

@@ -7,11 +7,9 @@ from math import gcd
 from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
 
 from ..storage.files import ConverseError
-from .exact import (Ends, Number, decimal_text, exact, integer, is_decimal, is_integer, outward,
-                    range_text)
+from .exact import Ends, Number, decimal_text, integer, is_decimal, is_integer, outward, range_text
 from .lattice import echelon
-from .map import (HIGHEST, PLACES, THESIS, MuldoonMap, Numbers, Range, SymplecticMap, ends_of,
-                  exact_of)
+from .map import HIGHEST, PLACES, THESIS, Numbers, Range, SymplecticMap, ends_of, exact_of
 from .potential import Wave, sum_text
 
 NAMES = ("a", "b", "c", "v0", "v1")
@@ -143,36 +141,6 @@ class Problem:
             An amplitude is not a finite decimal.
         """
         return replace(self, map=self.map.tied())
-
-    @classmethod
-    def around(cls, centre: Sequence[Number], half: Sequence[Number],
-               comments: Union[str, Sequence[str]] = (), together: bool = False) -> "Problem":
-        """The problem of an input file of 1989.
-
-        Parameters
-        ----------
-        centre, half
-            Five exact numbers each: centres and half-widths of a, b, c, v0 and v1, the latter two
-            in units of pi.
-        comments
-            For the report and the proof file.
-        together
-            Whether a, b and c move together, as in MuldoonMap.
-
-        Raises
-        ------
-        TypeError, ValueError
-            A number is not exact, a half-width is negative, or there are not five of each.
-        """
-        if not len(centre) == len(half) == len(NAMES):
-            raise ValueError("there are %d centres and %d half-widths where five belong: of a, b, "
-                             "c, v0 and v1" % (len(centre), len(half)))
-        pairs = [(exact(c), exact(h)) for c, h in zip(centre, half)]
-        for name, (_, h) in zip(NAMES, pairs):
-            if h < 0:
-                raise ValueError("the half-width of %s is negative" % name)
-        a, b, c, v0, v1 = [(middle - h, middle + h) for middle, h in pairs]
-        return cls(MuldoonMap(a, b, c, together=together), v0, v1, comments)
 
     def _check_choices(self):
         """Checks the axes and alone."""

@@ -26,8 +26,9 @@ from fractions import Fraction
 
 import mpmath
 import pytest
+from conftest import around
 
-from converse import Problem, StandardMap
+from converse import StandardMap
 from converse import check as package
 from converse import prove, read_input
 from converse.check import lockstep
@@ -192,7 +193,7 @@ def moving(tmp_path_factory):
             ("narrow box", inputs, "0.0239", "0.0241", False),
             ("slanted box", slanted, "0.0236", "0.0250", False)):
         ends = [[k * Fraction(x) for k in direction] for x in (low, high)]
-        problem = Problem.around((*((p + q) / 2 for p, q in zip(*ends)), Fraction(1), Fraction(1)),
+        problem = around((*((p + q) / 2 for p, q in zip(*ends)), Fraction(1), Fraction(1)),
                           (*((q - p) / 2 for p, q in zip(*ends)), Fraction(1), Fraction(1)), (),
                           together)
         path = tmp_path_factory.mktemp("proofs") / "moving"

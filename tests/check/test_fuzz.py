@@ -11,6 +11,7 @@ import re
 from fractions import Fraction
 
 import pytest
+from conftest import around
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from test_check import definite, sealed, tree_of, true_bound, with_field, with_tree
@@ -189,7 +190,7 @@ def proof_files(root, tmp_path_factory):
                               ("0.285 0.015", "0.285 0.015", "0.57 0.03", False),
                               ("0.27 0.01", "0.29 0.01", "0.57 0.02", False)):
         ranges = [map(Fraction, pair.split()) for pair in (a, b, c, "1 1", "1 1")]
-        converse.prove(Problem.around(*zip(*ranges), (), together), method="loewner").save(path)
+        converse.prove(around(*zip(*ranges), (), together), method="loewner").save(path)
         found.append(path.read_text(encoding="utf-8"))
     return found
 

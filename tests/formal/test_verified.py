@@ -16,7 +16,7 @@ from fractions import Fraction
 
 import pytest
 import test_parts as by_hand
-from conftest import ROOT
+from conftest import ROOT, around
 
 from converse import Problem, check, prove, read_input
 from converse.model.exact import decimal_text
@@ -51,7 +51,7 @@ def texts(tmp_path_factory):
         ("standard-63-64.in", False), ("standard-972.in", False),
         *((name, False) for name in GENERAL))}
     inputs["point"] = Problem(MuldoonMap("0.31", "0.31", "0.62")), False
-    inputs["part"] = Problem.around(("0.3085", "0.3085", "0.617", "0.4", "1.3"),
+    inputs["part"] = around(("0.3085", "0.3085", "0.617", "0.4", "1.3"),
                                     ("0.00125", "0.00125", "0.0025", "0.2", "0.1")), False
     found = {}
     for name, (problem, together) in inputs.items():

@@ -16,6 +16,7 @@ from types import SimpleNamespace
 
 import mpmath
 import pytest
+from conftest import around
 
 from converse import Problem, Settings, prove
 from converse.model.map import LINE, MuldoonMap
@@ -772,7 +773,7 @@ def line(low, high, together=True, region=(1, 1), skew=1):
     low, high = Fraction(low) * LINE, Fraction(high) * LINE
     c, h = (low + high) / 2, (high - low) / 2
     skew = Fraction(skew)
-    return Problem.around((c, skew * c, 2 * c, Fraction(1), Fraction(1)),
+    return around((c, skew * c, 2 * c, Fraction(1), Fraction(1)),
                    (h, skew * h, 2 * h, *map(Fraction, region)), together=together)
 
 
@@ -824,7 +825,7 @@ def falls(betas, l):
 
 
 WITH_TORI = [
-    Problem.around((Fraction(0),) * 3 + (Fraction(1),) * 2,
+    around((Fraction(0),) * 3 + (Fraction(1),) * 2,
                    (Fraction(0),) * 3 + (Fraction(1),) * 2),
     line("0.0001", "0.0001"), line("0.001", "0.001"), line("0.0120", "0.0280"),
     line("0.01", "0.01"), line("-0.001", "0.001"), line("0.01", "0.01", skew="0.5"),
@@ -871,7 +872,7 @@ def test_a_cell_is_what_it_says(proof):
         centre = [c + h * ((2 * index[k] + 1) * part[k] - 1)
                   for c, h, k in zip(problem.centre, problem.half, axes)]
         half = [h * part[k] for h, k in zip(problem.half, axes)]
-        cell = replace(Problem.around(tuple(centre), tuple(half), together=True),
+        cell = replace(around(tuple(centre), tuple(half), together=True),
                        axes=problem.frame)
         same += grow(task, (index, cuts, 0)).text == \
             grow(replace(task, problem=cell), (*ROOT, 0)).text
@@ -956,7 +957,7 @@ def test_no_company_matters(problem, star, monkeypatch):
 def test_an_orbit_ends_where_it_cannot_go_on(a, half):
     """The images are too wide both ways: two points are all there is."""
     for way in (1, -1):                     # of a alone, of b alone
-        problem = Problem.around((*(Fraction(a), 0)[::way], 0, *(Fraction("-0.4"), 0)[::way]),
+        problem = around((*(Fraction(a), 0)[::way], 0, *(Fraction("-0.4"), 0)[::way]),
                                  (*(Fraction(half), 0)[::way], 0, 0, 0))
         search = Search(Task(problem, Settings("loewner", 0, stubborn=True), ("-1", "0")[::way]))
         assert search.work(0, bool)
@@ -1055,20 +1056,20 @@ def test_other_parameters():
     assert part.conclusion == "region" and not part.no_tori
     assert part.report().startswith("THEOREM, for a part of the torus only\n")
     minus = line("0.0200", "0.0210")        # V(y + pi) changes the signs of a and b
-    minus = Problem.around(tuple(-x for x in minus.centre[:2]) + minus.centre[2:], minus.half,
+    minus = around(tuple(-x for x in minus.centre[:2]) + minus.centre[2:], minus.half,
                     together=False)
     assert prove(minus, method="loewner").no_tori
 
 
 def test_huge_and_tiny_numbers():
-    huge = Problem.around((Fraction(10) ** 18,) * 3 + (Fraction(1),) * 2,
+    huge = around((Fraction(10) ** 18,) * 3 + (Fraction(1),) * 2,
                    (Fraction(0),) * 3 + (Fraction(1),) * 2)
     far = line("0.0200", "0.0200")
-    far = Problem.around(far.centre[:3] + (Fraction(10) ** 12,) * 2,
+    far = around(far.centre[:3] + (Fraction(10) ** 12,) * 2,
                          far.half[:3] + (Fraction(1, 2),) * 2, together=True)
     assert prove(huge, depth=10, method="loewner").no_tori    # and rightly so
     assert prove(far, depth=10, method="loewner", stubborn=True).undecided
     with pytest.raises(ArithmeticError):
         kernels.call("product", [10 ** 160] * 4, 2, 15, "double")
-    beyond = Problem.around((Fraction(2) ** 60,) * 3 + (Fraction(1),) * 2, huge.half)
+    beyond = around((Fraction(2) ** 60,) * 3 + (Fraction(1),) * 2, huge.half)
     assert prove(beyond, depth=10, method="loewner", stubborn=True).undecided

@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import chart
 import pytest
-from conftest import ROOT
+from conftest import ROOT, around
 from test_numbers import PAGES, POINTS, number, rows, said, sharper
 
 from converse import Problem, portray, tori
@@ -119,7 +119,7 @@ PORTRAITS = {
     "strips, 15": lambda k: portray(MuldoonMap(k, 0, 0), depth=15),
     "strips, 16": lambda k: portray(MuldoonMap(k, 0, 0), depth=16),
     "lines, 17": lambda k: portray(MuldoonMap(k, 0, 0), depth=17, strips=False),
-    "300 strips, 14": lambda k: portray(Problem.around(
+    "300 strips, 14": lambda k: portray(around(
         ("0.9005", 0, 0, 1, 1), ("0.0005", 0, 0, 1, 1)), columns=300, depth=14),
 }
 
@@ -159,7 +159,7 @@ def test_tori(name, ends, rotation, size, residual, needed):
         problem = end(ends[0])
     elif name == "standard":
         low, high = map(Fraction, ends)
-        problem = Problem.around(((low + high) / 2, 0, 0, 1, 1), ((high - low) / 2, 0, 0, 1, 1))
+        problem = around(((low + high) / 2, 0, 0, 1, 1), ((high - low) / 2, 0, 0, 1, 1))
     else:
         problem = chart.on_line(*ends, together=True)
     found = tori.find(problem, rotation)

@@ -3,9 +3,9 @@
 from fractions import Fraction
 
 import pytest
+from conftest import around
 
 import converse
-from converse import Problem
 from converse.model.map import LINE
 
 import kernels
@@ -17,7 +17,7 @@ FULL = (("1", "1"), ("1", "1"))
 
 def problem(a, b, c, v=FULL):
     pairs = [a, b, c, *v]
-    return Problem.around(tuple(Fraction(x) for x, _ in pairs),
+    return around(tuple(Fraction(x) for x, _ in pairs),
                           tuple(Fraction(x) for _, x in pairs), ())
 
 

@@ -14,9 +14,9 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, around
 
-from converse import ConverseError, Problem, Proof, prove
+from converse import ConverseError, Proof, prove
 from converse.model.exact import decimal_text
 from converse.model.map import LINE
 from converse.prover import native, run, shared, tree, workers
@@ -29,7 +29,7 @@ from truth import TORTURE
 def line(low, high):
     low, high = Fraction(low) * LINE, Fraction(high) * LINE
     c, h = (low + high) / 2, (high - low) / 2
-    return Problem.around((c, c, 2 * c, Fraction(1), Fraction(1)),
+    return around((c, c, 2 * c, Fraction(1), Fraction(1)),
                           (h, h, 2 * h, Fraction(1), Fraction(1)),
                    together=True)
 
@@ -73,7 +73,7 @@ def test_threads(proof):
 
 def test_the_method_of_the_thesis_too():
     a, b = Fraction("0.306"), Fraction("0.00125")
-    problem = Problem.around((a, a, 2 * a, Fraction(1), Fraction(1)),
+    problem = around((a, a, 2 * a, Fraction(1), Fraction(1)),
                       (b, b, 2 * b, Fraction(1), Fraction(1)))
     with concurrent.futures.ThreadPoolExecutor(3) as executor:
         assert timeless(prove(problem, executor=executor,

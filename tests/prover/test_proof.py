@@ -13,6 +13,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from conftest import around
 
 from converse import (ConverseError, Counts, Problem, Proof, Settings, StandardMap, check, prove,
                       read_input)
@@ -312,10 +313,10 @@ def test_a_backup_destroys_nothing_else(tmp_path, problem):
 
 
 def test_zero_half_widths(tmp_path):
-    point = Problem.around((Fraction("0.32"), Fraction("0.32"), Fraction("0.64"), Fraction(1),
+    point = around((Fraction("0.32"), Fraction("0.32"), Fraction("0.64"), Fraction(1),
                      Fraction(1)), (Fraction(0),) * 3 + (Fraction(1),) * 2)
     assert prove(point, method="thesis").no_tori
-    spot = Problem.around(point.centre[:3] + (Fraction("0.75"), Fraction("0.5")),
+    spot = around(point.centre[:3] + (Fraction("0.75"), Fraction("0.5")),
                           (Fraction(0),) * 5)
     result = prove(spot, depth=2, method="thesis")
     assert set(result.tree) <= set("01PSU")

@@ -11,9 +11,9 @@ from threading import Thread
 
 import mpmath
 import pytest
+from conftest import around
 
 import converse
-from converse import Problem
 from converse.model.exact import pi_bounds
 from converse.model.map import LINE
 from converse.prover.tree import leaves
@@ -27,7 +27,7 @@ FULL = (("1", "1"), ("1", "1"))
 def problem(a, b, c, v=FULL):
     """(centre, half) pairs of decimal strings."""
     pairs = [a, b, c, *v]
-    return Problem.around(tuple(Fraction(x) for x, _ in pairs),
+    return around(tuple(Fraction(x) for x, _ in pairs),
                           tuple(Fraction(x) for _, x in pairs), ())
 
 

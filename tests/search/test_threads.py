@@ -7,8 +7,8 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from conftest import around
 
-from converse import Problem
 from converse.model.map import LINE
 from converse.prover.native import Search, Task, WrongTree, chosen_start, grow
 from converse.prover.settings import Settings
@@ -19,7 +19,7 @@ from truth import TORTURE
 def line(low, high, together=True):
     low, high = Fraction(low) * LINE, Fraction(high) * LINE
     c, h = (low + high) / 2, (high - low) / 2
-    return Problem.around((c, c, 2 * c, Fraction(1), Fraction(1)),
+    return around((c, c, 2 * c, Fraction(1), Fraction(1)),
                           (h, h, 2 * h, Fraction(1), Fraction(1)), together=together)
 
 

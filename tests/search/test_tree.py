@@ -4,16 +4,16 @@ from fractions import Fraction
 from math import prod
 
 import pytest
+from conftest import around
 from hypothesis import given
 from hypothesis import strategies as st
 
-from converse import Problem
 from converse.prover.tree import Leaf, TreeError, Walk, cells, complete, leaves
 
 TREES = st.recursive(st.sampled_from("PSU"),
                      lambda sub: st.tuples(st.sampled_from("01234"), sub, sub).map("".join),
                      max_leaves=40)
-SMALL = Problem.around((Fraction(0),) * 3 + (Fraction("0.3"), Fraction("-0.7")),
+SMALL = around((Fraction(0),) * 3 + (Fraction("0.3"), Fraction("-0.7")),
                 (Fraction(0),) * 3 + (Fraction("0.1"), Fraction("2.5")))
 
 
@@ -39,7 +39,7 @@ def test_order_and_halves():
     assert [leaf.depth for leaf in (lower, below, above)] == [1, 2, 2]
 
 
-BOXES = Problem.around(tuple(map(Fraction, (1, 2, 3, 0, "-0.7"))),
+BOXES = around(tuple(map(Fraction, (1, 2, 3, 0, "-0.7"))),
                 tuple(map(Fraction, ("0.5", "0.25", 1, "0.1", "2.5"))))
 
 
@@ -102,7 +102,7 @@ def test_not_a_tree(text):
 
 
 def test_zero_widths_and_deep_cuts():
-    point = Problem.around((Fraction(0),) * 5, (Fraction(0),) * 5)
+    point = around((Fraction(0),) * 5, (Fraction(0),) * 5)
     assert [leaf.half for leaf in leaves(point, "01PSU")] == [(0, 0)] * 3
     deepest = list(leaves(SMALL, "0" * 5000 + "P"))[0]
     assert deepest.depth == 5000 and deepest.half[0] == Fraction("0.1") / 2 ** 5000
