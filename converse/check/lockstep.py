@@ -32,7 +32,8 @@ WHOLE_ERROR = 2.0 ** -61                # radians in 2^-64 turns, and more
 FORCE_ROUNDING = UNIT / 16              # of a wave's force, divided by its amplitude: (C13)
 AMPLITUDE_BITS, AMPLITUDE_UNIT = 100, 2.0 ** -100       # of amplitudes, in turns: (C9)
 UNDERFLOW_MARGIN = 2.0 ** -200          # added to sizes and divisors that may underflow
-FAST_SIZE_MAX = 2.0 ** 10               # of amplitudes, x*, regions (in turns) and frames
+FAST_SIZE_MAX = 2.0 ** 10               # of a cell's amplitudes, x*, regions (in turns) and frames
+AMPLITUDE_MAX = 2.0 ** 100              # of a claim's, of which some cells may have less
 FAST_CUTS_MAX = 52                      # cuts of an axis; cells are wider than 2^-64 turns
 REACH_MAX = 1.0                         # of a wave at a site, in radians: (C19)
 DETERMINANT_MIN = 2.0 ** -60            # of d; smaller ones end a lane: (C15)
@@ -87,8 +88,8 @@ def wrapped(units):
 
 def units_of(x, bits):
     """x radians in units of 2^-bits turns, off by less than 1.1 units for bits <= 100 and |x| up to
-    FAST_SIZE_MAX: x and pi are taken within 2^-127."""
-    fixed = fixed_of(128)
+    AMPLITUDE_MAX: x and pi are taken within 2^-255."""
+    fixed = fixed_of(256)
     return (math.floor(x * fixed.one) << bits) // (2 * fixed.pi)
 
 
@@ -814,9 +815,10 @@ class Lockstep:
         self.take_regions(claims)
         sizes = [x for claim in claims for x in (
             *claim.xstar, *claim.centre, *claim.frame,
-            *[x / 2 for x in itertools.chain(*claim.moves)],
-            *[2 * (abs(wave.middle) + sum(map(abs, wave.parts))) for wave in claim.examined])]
-        if max(map(abs, sizes)) > FAST_SIZE_MAX:
+            *[x / 2 for x in itertools.chain(*claim.moves)])]
+        amplitudes = [abs(x) for claim in claims for wave in claim.examined
+                      for x in (wave.middle, *wave.parts)]
+        if max(map(abs, sizes)) > FAST_SIZE_MAX or max(amplitudes) > AMPLITUDE_MAX:
             raise ValueError("too large for the fast path")
 
     def take_waves(self, claims):
@@ -852,17 +854,20 @@ class Lockstep:
                                       object).T)
 
     def box(self, index, cuts, number):
-        """Boxes that cover these cells of the claims with these numbers, as Prisms takes them.
+        """Boxes that cover these cells of the claims with these numbers, as Prisms takes them."""
+        cells = *self.placed(index, cuts), number
+        A, h, W = self.amplitudes(*cells)
+        return in_turns(A), h, W, *self.successors(*cells)
 
-        at / 2^cuts, the middle of a cell, and part, its half-width, both for the half-width 1 of
-        the claim, are exact.
-        """
-        at, part = 2 * index + 1 - (1 << cuts), np.ldexp(1.0, -cuts.astype(np.intc))
-        cells = at.astype(object), cuts.astype(object), part, number
-        return *self.amplitudes(*cells), *self.successors(*cells)
+    @staticmethod
+    def placed(index, cuts):
+        """at and cuts, and part: at / 2^cuts, the middle of a cell, and part, its half-width, both
+        for the half-width 1 of the claim, are exact."""
+        at = 2 * index + 1 - (1 << cuts)
+        return at.astype(object), cuts.astype(object), np.ldexp(1.0, -cuts.astype(np.intc))
 
     def amplitudes(self, at, cuts, part, number):
-        """The amplitudes, h and W of the waves of these cells.
+        """The amplitudes in units of 2^-AMPLITUDE_BITS turns, h and W of the waves of these cells.
 
         Each time that a claim names a wave, the amplitude is off by less than 1.1 units for the
         middle, and by 2.1 for each part, in all by 7.4 units, 0.73 2^-94 radians.  A part is off by
@@ -879,7 +884,7 @@ class Lockstep:
                     A[w] += along * at[axis] >> cuts[axis]
                     h[w, m] = along.astype(float) * (TWO_PI * AMPLITUDE_UNIT) * part[axis]
             W[w] = here[number] * 2.0 ** -93 + 3 * UNIT * np.abs(h[w]).sum(axis=0)
-        return in_turns(A), h, W
+        return A, h, W
 
     def successors(self, at, cuts, part, number):
         """X[1] of these cells, its columns, and the error of x[1].
@@ -966,17 +971,20 @@ class Lockstep:
             todo = [np.concatenate(both, axis=-1) for both in zip(
                 halves([x[..., ~excluded] for x in batch], axis[~excluded]), later)]
 
-    @staticmethod
-    def pieces_of(cells, least):
-        """The cells with an l whose numbers are exact in doubles, those with the fewest cuts first:
-        as arrays of index, cuts, the claim's number, l and the cell's number."""
+    def pieces_of(self, cells, least):
+        """The cells with an l whose numbers are exact in doubles and whose amplitudes are at most
+        FAST_SIZE_MAX, those with the fewest cuts first: as arrays of index, cuts, the claim's
+        number, l and the cell's number."""
         some = sorted([n for n, (_, (_, cuts)) in enumerate(cells)
                        if max(cuts) <= FAST_CUTS_MAX and least[n] is not None],
                       key=lambda n: sum(cells[n][1][1]))
         index, cuts = [np.array([cells[n][1][part] for n in some], np.int64).reshape(-1, 5).T
                        for part in (0, 1)]
-        return [index, cuts, np.array([cells[n][0] for n in some], int),
-                np.array([least[n] for n in some]), np.array(some, int)]
+        number = np.array([cells[n][0] for n in some], int)
+        A, h, _ = self.amplitudes(*self.placed(index, cuts), number)
+        size = np.abs(A).astype(float) * (TWO_PI * AMPLITUDE_UNIT) + np.abs(h).sum(axis=1)
+        return [x[..., (size <= FAST_SIZE_MAX).all(axis=0)] for x in (
+            index, cuts, number, np.array([least[n] for n in some]), np.array(some, int))]
 
 
 def halves(pieces, axis):

@@ -132,6 +132,18 @@ static int worst_of(const batch *w, int k)
     return worst;
 }
 
+/* The cuts of a column's axis, or of these as many as made a parameter narrow: a range whose ends
+   differ by orders of magnitude is cut until the amplitudes are about the same in all of a cell. */
+static int fineness(const batch *w, int k, int column, const cv_cell *cell)
+{
+    const int cuts = cell->cuts[w->problem->axis[column]];
+    double widest = 0.0;
+
+    FOR_WAVES(w, i)
+        widest = fmax(widest, fabs(at(&w->part[i][column], k)) / at(&w->size[i], k));
+    return column < 2 || ldexp(widest, cuts) <= 1.0 ? cuts : -ilogb(widest);
+}
+
 /* Why the prism of lane k failed: blames a column, and tells what its halves should know.
 
    Where (1) is negative at the centre, that is the column with the largest share in the bound.  But
@@ -145,8 +157,7 @@ static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
     const int widest = widest_at_ends(w, k);
     int worst = s->contradicted ? worst_of(w, k) : widest;
 
-    if (s->ended &&
-        cell->cuts[problem->axis[widest]] + CUTS_BEHIND_MAX < cell->cuts[problem->axis[worst]])
+    if (s->ended && fineness(w, k, widest, cell) + CUTS_BEHIND_MAX < fineness(w, k, worst, cell))
         worst = widest;
     if (!s->contradicted)
         out->v.reason = s->why;

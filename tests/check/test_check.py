@@ -2424,6 +2424,28 @@ def test_lockstep_boxes_cover_their_cells(np, texts, generator):
 
 
 @pytest.mark.quick
+def test_cells_of_a_wide_range_are_checked_in_doubles(np, texts, generator):
+    """Those whose amplitudes are small; and their amplitudes are as true as others'."""
+    claim = claim_of(with_tree(texts["trig278"], "P"))
+    for wide in Fraction(10) ** 9, Fraction(2) ** 51:
+        claim = dataclasses.replace(claim, waves=tuple([dataclasses.replace(
+            wave, middle=wide / 2 + Fraction(1, 3), parts=(-wide / 2, *wave.parts[1:]))
+            for wave in claim.waves]))
+        fast, cuts = check.Lockstep([claim]), math.ceil(math.log2(wide))
+        last = (1 << cuts) - 1
+        small, large = [((0, 0, index, 0, 0), (0, 0, cuts, 0, 0)) for index in (last, 0)]
+        *_, kept = fast.pieces_of([(0, large), (0, small)], [0.5, 0.5])
+        assert kept.tolist() == [1]
+        for n in range(20):
+            at = (0, 0, last - n, 0, 0), small[1]
+            (most, rest, _), h, W, *_ = fast.box(*cells_of([at]), np.zeros(1, int))
+            for wave in claim.examined:
+                w = fast.shape.known.index((wave.k, wave.phase % 2))
+                turns = Fraction(int(most[w, 0]), 1 << 38) + Fraction(float(rest[w, 0])) * (1 << 26)
+                assert abs(real(wave.over(at)[0]) - 2 * mp.pi * real(turns)) <= W[w, 0] / 2
+
+
+@pytest.mark.quick
 def test_a_frame_counts_with_its_entries(np, texts):
     """Where v0 and v1 lose nearly a unit each, x[1] loses as many as its frame has."""
     v = 1 + (1 - Fraction(1, 1 << 40)) / (1 << 63)

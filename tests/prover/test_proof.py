@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from conftest import around
 
-from converse import (ConverseError, Counts, Problem, Proof, Settings, StandardMap, check, prove,
-                      read_input)
+from converse import (ConverseError, Counts, FourierMap, Problem, Proof, Settings, StandardMap,
+                      check, prove, read_input)
 from converse.draw import plot
 from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.problem import IDENTITY
@@ -710,3 +710,11 @@ def test_the_method_of_settings_is_that_of_prove():
     assert Settings().method == prove(LINE).method == "loewner"
     with pytest.raises(ValueError, match=r"digits \(--precision\) is of the method thesis alone"):
         prove(LINE, method="loewner", digits=20)
+
+
+def test_a_range_over_orders_of_magnitude_takes_few_prisms(tmp_path):
+    """Its parameter is cut until the amplitudes are about the same in all of a cell, and the angles
+    are not cut meanwhile.  The checker takes the small ones in doubles."""
+    proof = prove(FourierMap({(1, "+cos"): {"K": 1}, (3, "+cos"): "0.05"}, K=("0.38", "1e9")))
+    assert proof.no_tori and proof.counts.proved < 6000
+    assert "in doubles" in proof.verify().text
