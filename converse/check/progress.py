@@ -2,9 +2,10 @@
 
 import contextlib
 import sys
+import threading
 import time
 
-BAR_SECONDS, LINE_SECONDS = 0.2, 30     # of the progress: on a terminal, elsewhere
+BAR_SECONDS, LINE_SECONDS = 0.2, 60     # of the progress: on a terminal, elsewhere
 QUIET_SECONDS = 2                       # Elsewhere no step of a shorter check is told.
 
 
@@ -35,30 +36,38 @@ def complain(text):
 
 
 class Bar:
-    """The progress on stderr.  On a terminal one line that is written again and again, elsewhere a
-    new line now and then."""
+    """The progress on stderr, which a thread writes: on a terminal one line again and again,
+    elsewhere a line a minute."""
 
     def __init__(self, wanted, total):
-        self.total, self.done, self.width, self.began = total, 0, 0, time.monotonic()
+        self.total, self.done, self.step, self.width = total, 0, "", 0
+        self.began, self.over = time.monotonic(), threading.Event()
         self.on = wanted and sys.stderr is not None
         self.terminal = self.on and sys.stderr.isatty()
-        self.pause = BAR_SECONDS if self.terminal else LINE_SECONDS
-        self.drawn = self.began + 5 * BAR_SECONDS * self.terminal   # a short check has none
+        self.thread = threading.Thread(target=self.repeat, daemon=True)
 
     def __enter__(self):
+        if self.on:
+            self.thread.start()
         return self
 
     def advance(self, leaves):
         self.done += leaves
-        now = time.monotonic()
-        if self.on and now > self.drawn + self.pause:
-            self.drawn = now
-            self.draw("{:,} of {:,} leaves".format(self.done, self.total))
 
     def tell(self, text):
         """Shows the step that begins; it can take minutes."""
+        self.step = text
         if self.on and (self.terminal or time.monotonic() > self.began + QUIET_SECONDS):
             self.draw(text)
+
+    def repeat(self):
+        pause = BAR_SECONDS if self.terminal else LINE_SECONDS
+        first = 5 * pause if self.terminal else pause       # a short check has none
+        while not self.over.wait(pause if self.width else first):
+            passed = int(time.monotonic() - self.began)
+            self.draw("%d:%02d:%02d %s" % (
+                passed // 3600, passed // 60 % 60, passed % 60,
+                self.step or "{:,} of {:,} leaves".format(self.done, self.total)))
 
     def draw(self, text):
         if not self.terminal:
@@ -69,5 +78,8 @@ class Bar:
         self.width = len(text)
 
     def __exit__(self, *_):
+        self.over.set()
+        if self.on:
+            self.thread.join()
         if self.width:
             self.draw("")
