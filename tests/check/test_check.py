@@ -3,10 +3,8 @@
 import ast
 import contextlib
 import dataclasses
-import decimal
 import gzip
 import hashlib
-import inspect
 import itertools
 import json
 import math
@@ -27,11 +25,11 @@ from fractions import Fraction
 import mpmath
 import pytest
 from conftest import around
+from files import sealed, tree_of, with_line
 
 from converse import StandardMap
 from converse import check as package
 from converse import prove, read_input
-from converse.check import lockstep
 from converse.model.map import LINE
 
 from checker import check, start_of_workers
@@ -62,12 +60,6 @@ def texts(root, tmp_path_factory):
     return found
 
 
-def sealed(text):
-    """The text with the right checksum."""
-    body = text[:text.rindex("checksum: ")]
-    return body + "checksum: sha256 %s\nend\n" % hashlib.sha256(body.encode()).hexdigest()
-
-
 def with_field(text, name, value):
     """The text with another value of a field; or, of a proof of the thesis's waves, with another
     centre and half-width of a, b or c, or parameters that move `together` or not."""
@@ -78,14 +70,6 @@ def with_field(text, name, value):
     if name == "at once" and value == "yes" and is_together(text):
         value = "upper end"
     return with_line(text, name, value)
-
-
-def with_line(text, name, value, number=0):
-    """The text with another value of the field, or of the one of that number if it is repeated."""
-    lines = text.split("\n")
-    places = [i for i, line in enumerate(lines) if line.startswith(name + ": ")]
-    lines[places[number]] = "%s: %s" % (name, value)
-    return "\n".join(lines)
 
 
 def wave_words(text):
@@ -111,10 +95,6 @@ def with_parts(text, together):
         parts = [half] if together else ["0"] * i + [half] + ["0"] * (2 - i)
         text = with_line(text, "wave", " ".join([*words[:4], *parts]), i)
     return text if once == "no" else with_line(text, "at once", "upper end" if together else "yes")
-
-
-def tree_of(text):
-    return text.partition("\ntree:\n")[2].partition("checksum")[0].replace("\n", "")
 
 
 def with_tree(text, tree, counted=True):
@@ -417,49 +397,6 @@ def test_angles_count_modulo_the_circle(texts, run, centre):
 
 # ---- rejected: the file is wrong; not confirmed: the claim is, or the checker is too weak
 
-@pytest.mark.parametrize("kind", "01PS")
-@pytest.mark.parametrize("into", "01PSUx")
-@pytest.mark.quick
-def test_flipped_nodes(texts, run, kind, into):
-    text = texts["trig274"]
-    tree = tree_of(text)
-    if kind == into:
-        return
-    places = [n for n, node in enumerate(tree) if node == kind]
-    for place in (places[0], places[len(places) // 2], places[-1]):
-        other = tree[:place] + into + tree[place + 1:]
-        changed = with_tree(text, other, counted=False)
-        status, _, err = run(changed)
-        assert status == 1 and "wrong checksum" in err
-        if {kind, into} != set("01"):
-            assert run(sealed(changed))[0] == 1
-        status, _, err = run(sealed(with_tree(text, other)))
-        if {kind, into} == set("01"):       # another tree, with as many leaves
-            assert status == 0 or "mirror" in err or "most_cuts" in err
-        elif (kind, into) == ("S", "P"):    # one more leaf proved: a good proof
-            assert status == 0
-        elif (kind, into) == ("P", "S"):
-            assert status == 0 or "mirror image is not proved" in err
-        else:
-            wrong = {"U": "undecided", "x": "not a node"}.get(into, "tree")
-            assert status == 1 and (wrong in err or "tree" in err)
-
-
-@pytest.mark.quick
-def test_a_leaf_without_a_proved_mirror_image(texts, run):
-    text = texts["trig274"]
-    tree = tree_of(text)
-    refused = 0
-    for place in range(0, len(tree), 5):
-        if tree[place] == "P":
-            swapped = list(tree)
-            first = tree.index("S")
-            swapped[place], swapped[first] = "S", "P"
-            status, _, err = run(sealed(with_tree(text, "".join(swapped))), "--quiet")
-            refused += status
-            assert status == 0 or "mirror image is not proved" in err
-    assert refused > 10
-
 
 CONTINUE = "; converse -r FILE goes on with the search\n"
 
@@ -486,87 +423,12 @@ def test_a_search_that_had_not_begun(texts, run):
                                  "when it was left; converse -r FILE begins it\n")
 
 
-@pytest.mark.parametrize("name", ["trig272", "deep"])
-def test_shortened_and_lengthened(texts, deep, run, name):
-    text = texts.get(name, deep)
-    tree = tree_of(text)
-    for other in (tree[:-1], tree[1:], tree + "P", "0" + tree, tree[:50] + tree[51:]):
-        for counted in (True, False):
-            status, _, err = run(sealed(with_tree(text, other, counted)))
-            assert status == 1 and "tree" in err
-    assert "truncated" in run(text[:-1])[2]
-    assert run(text + "\n")[0] == 1
-
-
-@pytest.mark.parametrize("name", ["segment", "beginning", "slanted"])
-def test_together_flipped_to_apart(moving, run, name):
-    """The box about a segment is much more than the segment.  These are true, as the prover finds
-    when it is asked; with tori at a corner they are not."""
-    text = with_field(moving[name], "together", "no")
-    if "at once: yes" in text:
-        assert "larger parameters" in run(sealed(text))[2] and run(sealed(text))[0] == 1
-        text = with_field(text, "at once", "no")
-    assert run(sealed(text))[0] == 0
-    for key in "abc":
-        text = with_field(text, key, "0.25 0.24")
-    status, out, err = run(sealed(text))
-    assert (status, out) == (5, "") and "not excluded" in err
-
-
-@pytest.mark.parametrize("name", ["box", "narrow box", "slanted box"])
-@pytest.mark.quick
-def test_apart_flipped_to_together(moving, run, name):
-    """The segment is less than its box; but it has no cuts along one parameter."""
-    text = with_field(moving[name], "together", "yes")
-    cut = set(tree_of(text)) & set("34")
-    status, out, err = run(sealed(text))
-    assert status == (1 if cut else 0)
-    assert "a parameter that there is not" in err if cut else "moving together" in out
-
-
 @pytest.mark.parametrize("name", ["beginning", "point", "box", "narrow box", "slanted box"])
 def test_at_once_flipped(moving, run, name):
     status, out, err = run(sealed(with_field(moving[name], "at once", "yes")))
     assert (status, out) == (1, "") and "rejected: larger parameters are not excluded" in err
     assert run(with_field(moving[name], "at once", "yes"))[2].count("wrong checksum") == 1
     assert "multiple" not in run(sealed(with_field(moving["segment"], "at once", "no")))[1]
-
-
-@pytest.mark.parametrize("name", ["segment", "slanted", "box", "slanted box"])
-@pytest.mark.parametrize("into", "01234?x")
-@pytest.mark.quick
-def test_flipped_cuts(moving, run, generator, name, into):
-    """Any cut becomes any other: the claim is the same, so what still passes is still true."""
-    text, tree = moving[name], tree_of(moving[name])
-    for kind in check.AXES:
-        places = [n for n, node in enumerate(tree) if node == kind and kind != into]
-        for place in generator.sample(places, min(1 + (TORTURE > 1), len(places))):
-            other = with_tree(text, tree[:place] + into + tree[place + 1:])
-            status, out, err = run(sealed(other))
-            if into in "?x":
-                assert status == 1 and "not a node of a finished tree" in err
-            elif into in "34" and is_together(text):
-                assert status == 1 and "a parameter that there is not" in err
-            else:
-                assert status == 0 or (5 if "not excluded" in err else 1) == status \
-                    and ("not excluded" in err or "mirror" in err)
-
-
-def test_flipped_leaves_below_cuts_of_parameters(moving, run, generator):
-    for name in ("segment", "box", "slanted"):
-        text, tree = moving[name], tree_of(moving[name])
-        leaves = [n for n, node in enumerate(tree) if node in "PS"]
-        for place in generator.sample(leaves, 3):
-            for into in "?USP2":
-                other = with_tree(text, tree[:place] + into + tree[place + 1:])
-                status, _, err = run(sealed(other))
-                if into == "P":
-                    assert status == 0 and tree[place] in "PS"
-                elif into == "S":
-                    assert status == 0 or "mirror" in err or "not symmetric" in err
-                else:
-                    why = {"?": "not a node", "U": "undecided", "2": "incomplete"}[into]
-                    assert status == 1 and why in err
 
 
 def test_parameters_widened_and_moved(moving, run):
@@ -642,12 +504,6 @@ def test_header(texts, run, name, value, why):
     assert ("rejected: " in err) == (status == 1) and ("not confirmed: " in err) == (status == 5)
 
 
-def test_widened_and_moved_where_orbits_are_needed(deep, run):
-    for name, value in (("a", "0.2 0.12"), ("b", "0.2 0.12")):
-        deep = with_field(deep, name, value)
-    assert "not excluded" in run(sealed(deep))[2]
-
-
 def test_header_lines(texts, run):
     """Each field once, in any order, and the seconds may be missing, as may be comments."""
     text = texts["trig278"]
@@ -690,31 +546,15 @@ def test_other_versions_and_line_ends(texts, run):
 
 
 @pytest.mark.parametrize("name, value, status, why", [
-    ("a", "1" * 3001 + " 0", 5, "characters"), ("a", "1e301 0", 5, "out of range"),
-    ("a", "0.3085 1e-999", 1, "symmetric"),
+    ("a", "1" * 3001 + " 0", 5, "characters"), ("a", "0.3085 1e-999", 1, "symmetric"),
     ("c", "0.617 0." + "0" * 990 + "1e-999", 5, "bits"), ("c", "1e300 0", 5, "too large"),
-    ("c", "1e1000 0", 1, "wave 3"), ("c", "0.617  0", 1, "wave 3"),
-    ("c", "\u0660.617 0", 1, "wave 3"), ("c", "0,617 0", 1, "wave 3"),
-    ("c", " " * 9999, 1, "wave 3"), ("depth", "\u0663\u0660", 1, "depth"),
-    ("depth", "9" * 19, 1, "depth"), ("most_cuts", "9" * 18, 1, "most_cuts"),
-    ("c", "0.617\0 0", 1, "wave 3")])
+    ("c", "\u0660.617 0", 1, "wave 3"), ("depth", "9" * 19, 1, "depth")])
 @pytest.mark.quick
 def test_numbers(texts, run, name, value, status, why):
     """Whatever they are: an answer soon, and in one line."""
     text = texts["trig274"]
     found, out, err = run(sealed(with_field(text, name, value)))
     assert (found, out) == (status, "") and why in err and err.count("\n") == 1
-
-
-def test_numbers_of_many_digits(texts, run):
-    text = with_parameters(texts["trig278"], *[("0.313", "0")] * 2, ("0.626", "0"))
-    centre, half = "0.626%s3" % ("0" * 400), "0.%s1e-300" % ("0" * 99)
-    status, out, _ = run(sealed(with_field(text, "c", centre + " " + half)))
-    assert status == 0 and re.search("in integers of 1[0-9]{3} bits", out)
-    with decimal.localcontext() as exact:
-        exact.prec = 2000
-        ends = [decimal.Decimal(centre) + sign * decimal.Decimal(half) for sign in (-1, 1)]
-    assert "\n{:f} <= c <= {:f}\n".format(*ends) in out
 
 
 def test_the_longest_numbers_of_an_input_are_within_the_limits_of_the_checker(run, tmp_path):
@@ -805,15 +645,6 @@ def test_damaged_gzip(texts, run):
         assert run(bad)[0] in (1, 2)
 
 
-def test_no_random_damage_passes(texts, run):
-    text, generator = texts["trig276"].encode(), random.Random(2)
-    for _ in range(200):
-        n = generator.randrange(len(text))
-        bad = text[:n] + bytes([text[n] ^ 1 << generator.randrange(8)]) + text[n + 1:]
-        status, out, err = run(bad)
-        assert status in (1, 2) and out == "" and err.count("\n") == 1
-
-
 def test_arguments(tmp_path, capsys):
     for arguments in ([], ["a", "b"], ["--jobs", "0", "x"], ["--sample", "x", "x"], ["--what"],
                       [str(tmp_path)], [str(tmp_path / "missing")], ["a\0b"], [""]):
@@ -821,16 +652,6 @@ def test_arguments(tmp_path, capsys):
         out, err = capsys.readouterr()
         assert out == "" and err.count("\n") == 1
     assert check.main(["--version"]) == 0
-
-
-def test_as_a_command(texts, tmp_path):
-    path = tmp_path / "x"
-    path.write_text(texts["trig274"], encoding="utf-8")
-    done = subprocess.run([sys.executable, "-m", "converse.check", path, "--jobs", "2"],
-                          cwd=tmp_path, capture_output=True)
-    assert done.returncode == 0 and done.stdout.startswith(b"Verified") and not done.stderr
-    done = subprocess.run([sys.executable, FOLDER, path], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (1, "") and done.stderr.count("\n") == 1
 
 
 def alone(one_file, *arguments, before="", stdin=None):
@@ -954,50 +775,10 @@ def test_a_reader_that_has_enough_is_no_failure(texts, one_file, tmp_path, form,
 # ---- the pages of the formats
 
 def test_the_example_of_the_format(root, run):
-    """A second reader, written from the page alone, finds in its example what the page says; the
-    checker verifies it."""
     page = (root / "docs/reference/proof-file.md").read_text(encoding="utf-8")
     example = page[page.rindex("    converse proof 6\n"):].split("\n\n")[0]
-    data = "".join(line[4:] + "\n" for line in example.split("\n")).encode()
-    body, end = data[:data.rindex(b"checksum: ")], data[data.rindex(b"checksum: "):]
-    assert end == b"checksum: sha256 %s\nend\n" % hashlib.sha256(body).hexdigest().encode()
-    head, tree = body.decode().split("\ntree:\n")
-    fields = dict(line.split(": ", 1) for line in head.split("\n")[1:])
-    tree = tree.replace("\n", "")
-    waves = [[Fraction(x) for x in line.split()] for line in
-             re.findall("(?m)^wave: [01] [01] 0 (.*)$", head)]
-    centre, half = zip(*([Fraction(x) for x in fields[name].split()] for name in ("v0", "v1")),
-                       *waves)
-    assert fields["at once"] == "upper end" and len(waves) == 3
-
-    def walk(at, box):
-        """The leaves of the subtree that begins there, and where it ends."""
-        if tree[at] not in "012":
-            return [(tree[at], box)], at + 1
-        axis, found, at = int(tree[at]), [], at + 1
-        i, k = box[axis]
-        for side in (0, 1):
-            more, at = walk(at, [*box[:axis], (2 * i + side, k + 1), *box[axis + 1:]])
-            found += more
-        return found, at
-
-    found, end = walk(0, [(0, 0)] * 3)
-    assert end == len(tree)
-    rows = []
-    for kind, box in found:
-        ends = [[c - h + 2 * h * (i + upper) / 2 ** k for upper in (0, 1)] for (i, k), c, h in
-                zip(box, (*centre[:2], Fraction(0)), (*half[:2], Fraction(1)))]
-        rows.append("| %s | %s to %s | %s to %s | %s to %s |\n" % (kind, *sum(ends, [])))
-    assert "|---|---|---|---|\n" + "".join(rows) + "\n" in page
-    for name, kind in (("proved", "P"), ("symmetric", "S"), ("undecided", "U")):
-        assert int(fields[name]) == tree.count(kind)
-    assert int(fields["cuts"]) == len(found) - 1
-    assert int(fields["most_cuts"]) == max(sum(k for _, k in box) for kind, box in found)
-    status, out, _ = run(data)
-    assert status == 0 and hashlib.sha256(data).hexdigest() in out
-    for k, name in enumerate("abc", 2):
-        low, high = (check.decimal_text(centre[k] + sign * half[k]) for sign in (-1, 1))
-        assert "\n%s <= %s <= %s\n" % (low, name, high) in out
+    status, out, _ = run("".join(line[4:] + "\n" for line in example.split("\n")))
+    assert status == 0 and out.startswith("Verified :")
 
 
 def test_the_format_names_what_the_checker_knows(root, texts, monkeypatch):
@@ -1018,7 +799,6 @@ def test_the_format_names_what_the_checker_knows(root, texts, monkeypatch):
     assert 1 << 28 == check.MAX_BYTES and 1 << 24 == check.MAX_LINE and 10 ** 300 == check.MAX_SIZE
     for status in range(6):
         assert "\n| %d | " % status in page
-    assert check.STATE.partition("\n")[0] in page and check.STATE_SECONDS == 10
 
 
 # ---- interruptions and processes
@@ -1029,29 +809,6 @@ def long(moving, tmp_path_factory):
     path = tmp_path_factory.mktemp("long") / "proof"
     path.write_text(moving["segment"], encoding="utf-8")
     return path, re.search("in [0-9]+ pieces", check.verify(path, exact=True).text).group()
-
-
-def test_struck_while_a_process_is_begun(long, tmp_path):
-    """Neither the parent nor the process, which has just been made, shows a traceback."""
-    code = """
-import os, signal, sys
-sys.path.insert(0, sys.argv.pop(1))
-from check import main
-def strike(frame, event, arg):
-    if (event, frame.f_code.co_name) == ("return", "_execute_child"):
-        sys.setprofile(None)
-        os.kill(os.getpid(), signal.SIGTERM)
-sys.setprofile(strike)
-sys.exit(main())
-"""
-    path, _ = long
-    process = subprocess.run([sys.executable, "-I", "-c", code, os.path.dirname(FOLDER),
-                              path, "--jobs", "3", "--exact"],
-                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                             timeout=PATIENCE)
-    assert process.returncode == 143, process.stderr
-    assert process.stderr == "converse-check: %s: interrupted; nothing was verified\n" % path
-    assert not process.stdout
 
 
 def test_a_signal_that_waited():
@@ -1502,11 +1259,6 @@ def random_point(generator, claim, cell):
 
 def random_text(generator, text, tree="P", size=1, width=1):
     return random_claim(generator, with_tree(text, tree), size, width)
-
-
-def off_by(true, centre, columns, eta):
-    """How far a true number is from a centre and columns."""
-    return abs(true - centre - sum(x * real(e) for x, e in zip(columns, eta)))
 
 
 def with_shifts(generator, claim, width="0.1"):
@@ -2069,37 +1821,6 @@ WORST = (worst_bending, worst_remainder, worst_bending)
 def test_lockstep_terms(np, generator, worst):
     """What is left of a wave is bounded, hardly too far."""
     assert 0.99 < worst(check, generator, 3000) <= 1
-
-
-@pytest.mark.parametrize("worst, old, new", [
-    (0, "rest * (reach + size) / 2 + fourth", "fourth"), (0, "/ 2 + fourth", "/ 2"),
-    (0, "rest * (reach + size) / 2", "rest * rest / 2"), (0, "+ s * third)", ")"),
-    (0, "H * (c * second + s * (rest + third))", "0"), (0, "c * second + s", "s"),
-    (0, "+ s * (rest + third)", ""), (0, "s * (rest + third)", "s * rest"),
-    (0, "s * (rest + third)", "s * third"), (0, "third)) + W", "third))"),
-    (2, "bend * products(xi), 0", "-bend * products(xi), 0"), (2, "x /= 2", "pass"),
-    (2, "x += part * xi", "x -= part * xi"), (2, "xi[i + j - m]", "xi[m]"),
-    (2, "mean = mean + x / 2", "mean = mean - x / 2"), (2, "mean + x / 2", "mean + x"),
-    (2, "if m in (i, j)", "if i == j == m"), (2, "if m in (i, j)", "if i < j and m in (i, j)"),
-    (1, "np.where(P * A0 > 0, fourth, rest * rest / 2)", "fourth"),
-    (1, "np.where(P * A0 > 0, fourth, rest * rest / 2)", "rest * rest / 2"),
-    (1, "P * A0 > 0", "P * A0 < 0"), (1, " + alpha * far", ""), (1, "/ 2 + fourth", "/ 2"),
-    (1, "far = rest * (reach + size) / 2 + fourth", "far = fourth"),
-    (1, "rest * (reach * (reach + size) + size * size) / 6", "0"),
-    (1, "reach * (reach + size) + size", "size"), (1, "second * third / 10", "0"),
-    (1, "+ beta * third)", ")"), (1, "a * far + alpha * second", "alpha * second"),
-    (1, "+ alpha * second", ""), (1, "+ b * third + beta", "+ beta"),
-    (1, "beta * (rest + third)", "beta * rest"), (1, "beta * (rest + third)", "beta * third"),
-    (1, " + W * weight", ""),
-    (1, "H * (a * far", "H * H / 2 * (a * far")])
-@pytest.mark.quick
-def test_no_term_may_be_missing(np, generator, worst, old, new):
-    """Each of them decides somewhere: without it the bounds fail the test above."""
-    source = inspect.getsource((check.bending, check.remainder, check.quadratic)[worst])
-    assert source.count(old) == 1
-    names = {**vars(lockstep)}
-    exec(source.replace(old, new), names)
-    assert WORST[worst](types.SimpleNamespace(**names), generator, 2000) > 1
 
 
 def left_side(waves, amplitudes, lanes, n, tails, l, lane, size, m=mp):
@@ -3025,9 +2746,7 @@ def test_no_orbit_of_a_leaf_of_other_potentials_minimizes(others, generator, nam
 
 
 @pytest.mark.parametrize("name, field, value, status, why", [
-    ("a patch", "frame", "1 2 2 4", 1, "determinant"), ("a patch", "frame", "1 0 0", 1, "four"),
-    ("a patch", "frame", "1 0 0 1 0", 1, "four"), ("a patch", "frame", "1 0 0 1.0", 1, "four"),
-    ("a patch", "frame", "1000000000 1 1 0", 1, "four"), ("a patch", "alone", "0", 1, "both"),
+    ("a patch", "frame", "1 2 2 4", 1, "determinant"), ("a patch", "alone", "0", 1, "both"),
     ("a patch", "alone", "2", 1, "neither"), ("a patch", "alone", "yes", 1, "neither"),
     ("one alone", "alone", "1", 5, "not excluded"), ("one alone", "alone", "no", 0, ""),
     ("a patch", "odd about", "1/2 0", 1, "not odd"), ("a patch", "odd about", "1/0 0", 1, "two"),
@@ -3046,13 +2765,7 @@ def test_no_orbit_of_a_leaf_of_other_potentials_minimizes(others, generator, nam
     ("a patch", "wave", "1 0 0 0.6 0.01", 1, "as many"),
     ("a patch", "wave", "0 0 0 1 0 0 0", 1, "zero"),
     ("a patch", "wave", "1 101 0 1 0 0 0", 1, "beyond 100"),
-    ("a patch", "wave", "1 .5 0 1 0 0 0", 1, "integer"),
-    ("a patch", "wave", "1 1 x 1 0 0 0", 1, "ratio"),
-    ("a patch", "wave", "1 1 1/0 1 0 0 0", 1, "ratio"),
-    ("a patch", "wave", "1 1 0 1/2 0 0 0", 1, "decimal"),
-    ("a patch", "wave", "1 1 0 nan 0 0 0", 1, "decimal"),
     ("a patch", "wave", "1 1 0 1e301 0 0 0", 5, "out of range"),
-    ("a patch", "wave", "1 1 0 %s 0 0 0" % ("1" * 3001), 5, "characters"),
     ("a patch", "wave", "1 1 1/2 0.6 0.01 0 0.02", 1, "not odd")])
 def test_header_of_other_potentials(others, run, name, field, value, status, why):
     text = re.sub("(?m)^%s: .*$" % field, "%s: %s" % (field, value), others[name], count=1)
@@ -3061,25 +2774,6 @@ def test_header_of_other_potentials(others, run, name, field, value, status, why
     found, out, err = run(sealed(text))
     assert found == status and why in err and err.count("\n") == (status != 0)
     assert (out == "") == (status != 0)
-
-
-def test_waves_moved_and_added(others, run):
-    """Any other number of another wave is another claim, and here a false one."""
-    text = others["(1, -1)"]
-    waves = re.findall("(?m)^wave: .*$", text)
-    for old, new in ((waves[1], "wave: 1 1 0 0.4 -0.02"), (waves[0], "wave: 1 0 0 1.2 0.01"),
-                     (waves[0], waves[0].replace("1.2", "-1.2")),
-                     (waves[0], waves[0].replace("1.2", "0.2")),
-                     (waves[1], waves[1].replace("-0.02", "-2"))):
-        changed = text.replace(old, new).replace("odd about: -1/2 1/2", "odd about: no")
-        status, out, err = run(sealed(changed))
-        assert (status, out) == (5, "") and "not excluded" in err, new
-    for lines, why in ([], "0 waves"), ([waves[0]] * 17, "17 waves"):
-        changed = text.replace("\n".join(waves) + "\n", "".join(x + "\n" for x in lines))
-        assert why in run(sealed(changed))[2] and run(sealed(changed))[0] == 1
-    assert run(sealed(text.replace("wave: ", "a: ")))[0] == 1
-    halves = "wave: 1 0 1/2 0.4 0.01\nwave: -1 0 1/2 0.8 0\n"         # the same wave in two
-    assert run(sealed(text.replace(waves[0] + "\n", halves)))[0] == 0
 
 
 @pytest.mark.parametrize("waves, order", [
@@ -3120,26 +2814,6 @@ def test_which_potentials_are_symmetric(texts, generator, waves, order):
     for more in ({"frame": (0, 1, 1, 0)}, {"v0": (1, 2)}, {"xstar": ("0.5", "0.6")}):
         text = general(texts["trig274"], waves, **{"xstar": ("0.5", "0.5"), **more})
         assert check.Mirror(claim_of(text)).orders == []
-
-
-@pytest.mark.quick
-def test_symmetric_leaves_of_a_patch(others, run):
-    text = others["a patch"]
-    tree = tree_of(text)
-    at = {cell: place for place, cell in check.leaves(tree)}
-    place, image = next((place, at[((j, i, *rest), (l, k, *cuts))])
-                        for ((i, j, *rest), (k, l, *cuts)), place in at.items()
-                        if (i, k) != (j, l) and ((j, i, *rest), (l, k, *cuts)) in at)
-    for both, middle in (((place,), ""), ((place, image), "not proved")):
-        other = list(tree)
-        for x in both:
-            other[x] = "S"
-        # The second parameter moves a up and b down: it is not symmetric, and cannot be exchanged.
-        status, _, err = run(sealed(with_tree(text, "".join(other))))
-        assert status == 1 and "not symmetric" in err
-        even = re.sub(r"-?0\.004", "0", text)
-        status, _, err = run(sealed(with_tree(even, "".join(other))))
-        assert (status, middle in err) == (1 if middle else 0, True)
 
 
 @pytest.mark.quick
@@ -3185,12 +2859,3 @@ def test_mirror_images_against_boxes(texts, generator, together, axes):
                 assert (mirror.refusal(cell) is None) == clear
                 seen.add(clear)
     assert seen == {True, False}
-
-
-def test_confirms_the_standard_map(root, tmp_path):
-    """b = c = 0: the free angle costs nothing."""
-    proof = prove(read_input(root / "inputs" / "standard-63-64.in"), method="loewner")
-    proof.save(tmp_path / "a.proof")
-    result = check.verify(tmp_path / "a.proof")
-    assert result and (result.status, result.verdict) == (0, "verified")
-    assert result.text.startswith("Verified :") and "\n0.984375 <= a <= 0.985\n" in result.text

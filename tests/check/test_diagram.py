@@ -7,6 +7,7 @@ import re
 from fractions import Fraction as F
 
 import pytest
+from files import sealed
 
 from converse import FourierMap, FroeschleMap, StandardMap, prove, tori
 from converse.diagram import Diagram
@@ -14,12 +15,6 @@ from converse.diagram import Diagram
 from checker import check
 
 pytestmark = pytest.mark.usefixtures("impatient")
-
-
-def sealed(text):
-    """The text with the right checksum of its own; those of its members are as they were."""
-    body = text[:text.rindex("checksum: ")]
-    return body + "checksum: sha256 %s\nend\n" % hashlib.sha256(body.encode()).hexdigest()
 
 
 def members(text):

@@ -11,14 +11,18 @@ import re
 from fractions import Fraction
 
 import pytest
+import test_parts as by_hand
 from conftest import around
+from files import sealed, tree_of
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
-from test_check import definite, sealed, tree_of, true_bound, with_field, with_tree
+from test_check import definite, true_bound, with_field, with_tree
+from test_tori import BODY as TORUS
 
 import converse
-from converse import InputError, Problem, Proof
+from converse import InputError, Problem, Proof, StandardMap
 from converse.model.exact import decimal_text
+from converse.prover.portrait import portray
 from converse.storage.files import ConverseError
 
 from checker import check
@@ -140,22 +144,32 @@ def test_any_bytes_as_backup(tmp_path_factory, data):
     one_line(caught.value)
 
 
-@MANY
+@pytest.fixture(scope="module")
+def formats(proof_bytes, diagram):
+    """A small file of each format that the checker reads."""
+    links = by_hand.linked(by_hand.found())
+    portrait = portray(StandardMap("1.2"), columns=8, depth=4)
+    return [proof_bytes, by_hand.file_of(**links).encode(), sealed(TORUS).encode(),
+            diagram.encode(), portrait._text().encode()]
+
+
+@pytest.mark.parametrize("which", range(5), ids=["proof", "links", "torus", "diagram", "portrait"])
+@settings(MANY, max_examples=150 * TORTURE)
 @given(edits=edits, seal=st.booleans(), zipped=st.booleans())
-def test_any_change_of_a_proof_file(proof_bytes, tmp_path_factory, edits, seal, zipped):
-    """The checker verifies a changed file only if the change leaves a theorem that is true: an
-    intact tree of the same problem.  Everything else is rejected, or unusable, in one line."""
-    data = edited(proof_bytes, edits)
+def test_any_change_of_a_file(formats, tmp_path_factory, which, edits, seal, zipped):
+    """The checker verifies a changed file only if it was sealed again, and then what it says is a
+    theorem.  Everything else is rejected, not confirmed or unusable, in one line."""
+    data = edited(formats[which], edits)
     if seal:
         data = resealed(data)
-    path = tmp_path_factory.getbasetemp() / ("proof-file-%d" % os.getpid())
+    path = tmp_path_factory.getbasetemp() / ("changed-%d" % os.getpid())
     path.write_bytes(gzip.compress(data, 1) if zipped else data)
     try:
         check.verify(path)
     except check.Failure as error:
         one_line(error)
     else:
-        assert seal or data == proof_bytes
+        assert seal or data == formats[which]
 
 
 @MANY

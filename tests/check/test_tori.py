@@ -2,7 +2,6 @@
 says, and never confirms what is false."""
 
 import gzip
-import hashlib
 import math
 import random
 import re
@@ -10,6 +9,7 @@ from fractions import Fraction
 
 import mpmath
 import pytest
+from files import sealed
 
 from converse import Problem
 from converse.check import field, series, tori, torus_file
@@ -42,11 +42,6 @@ pieces: 1
 tori:
 piece 0 0 40 0 %d
 """
-
-
-def sealed(text):
-    """The text with the right checksum and end."""
-    return text + "checksum: sha256 %s\nend\n" % hashlib.sha256(text.encode()).hexdigest()
 
 
 def modes_text(values):
@@ -304,42 +299,27 @@ BAD_BYTES = {
     "CR LF": sealed(BODY).replace("\n", "\r\n"),
     "two ends": sealed(BODY) + sealed(BODY), "no tori": sealed(BODY.replace("tori:\n", "")),
 }
-BAD_TEXT = [
-    ("dimension: 1", "dimension: 3"), ("dimension: 1", "dimension: 01"), ("dimension: 1\n", ""),
-    ("dimension: 1", "dimension: 2"), ("dimension: 1", "dimension: 1\ndimension: 1"),
-    ("dimension: 1", "Dimension: 1"), ("program: by hand", "author: me"),
-    ("program: by hand", "hint-: 1"), ("dimension: 1", "dimension:1"),
+BAD_TEXT = [            # what makes another claim, or none; test_fuzz.py has what is no word of it
+    ("dimension: 1", "dimension: 3"), ("dimension: 1", "dimension: 2"), ("dimension: 1\n", ""),
+    ("dimension: 1", "dimension: 1\ndimension: 1"), ("program: by hand", "author: me"),
     ("wave: 1 0 0 0.5\n", ""), ("wave: 1 0 0 0.5", "wave: 0 0 0 0.5"),
-    ("wave: 1 0 0 0.5", "wave: 1 0 0"), ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5 0 0"),
-    ("wave: 1 0 0 0.5", "wave: 1 1 0 0.5"), ("wave: 1 0 0 0.5", "wave: 1 0 0 nan"),
-    ("wave: 1 0 0 0.5", "wave: 1 0 0 0x1"), ("wave: 1 0 0 0.5", "wave: 1 0 0 \u0660.5"),
-    ("wave: 1 0 0 0.5", "wave: 1 0 0 1/0"), ("wave: 1 0 0 0.5", "wave: 1 0  0.5"),
-    ("wave: 1 0 0 0.5", "wave: 2 0 0 0.5"), ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5\nwave: 2 0 0 1 1"),
+    ("wave: 1 0 0 0.5", "wave: 1 1 0 0.5"), ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5 0 0"),
+    ("wave: 1 0 0 0.5", "wave: 1 0 0 \u0660.5"), ("wave: 1 0 0 0.5", "wave: 2 0 0 0.5"),
+    ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5\nwave: 2 0 0 1 1"),
     ("polynomial: -1 1 1", "polynomial: -1 0 1"), ("polynomial: -1 1 1", "polynomial: 1 2 1"),
-    ("polynomial: -1 1 1", "polynomial: -1 1 0"), ("polynomial: -1 1 1", "polynomial: -1 1"),
-    ("polynomial: -1 1 1", "polynomial: 1 0 1"), ("polynomial: -1 1 1", "polynomial: -1 1 1 1"),
-    ("polynomial: -1 1 1", "polynomial: -1 1.0 1"), ("polynomial: -1 1 1", "polynomial: -1 +1 1"),
+    ("polynomial: -1 1 1", "polynomial: -1 1 0"), ("polynomial: -1 1 1", "polynomial: 1 0 1"),
+    ("polynomial: -1 1 1", "polynomial: -1 1 1 1"),
     ("root: 0 1", "root: 1 0"), ("root: 0 1", "root: -2 1"), ("root: 0 1", "root: 1 2"),
-    ("root: 0 1", "root: 0"), ("root: 0 1", "root: 1/2 1/2"), ("root: 0 1", "root: inf 1"),
-    ("rotation: 0 1", "rotation: 1/2 0"), ("rotation: 0 1", "rotation: 0 1\nrotation: 1 1"),
-    ("rotation: 0 1\n", ""), ("rotation: 0 1", "rotation: 0 1 0"), ("rotation: 0 1", "rotation: 0"),
-    ("frame: 1", "frame: 0"), ("frame: 1", "frame: 1 0 0 1"), ("frame: 1", "frame: 0.5"),
-    ("alpha: 1", "alpha: 0"), ("alpha: 1", "alpha: -1"), ("alpha: 1", "alpha: 1 1"),
-    ("rho: 0.3", "rho: much"), ("rho: 0.3\n", ""), ("rho: 0.3", "rho: 0.3 0.3"),
-    ("rho: 0.3", "rho: -1"), ("rho: 0.3", "rho: 0"), ("pieces: 1", "pieces: 0"),
-    ("pieces: 1", "pieces: 2"), ("pieces: 1", "pieces: one"),
-    ("piece 0 0", "piece -1 1"), ("piece 0 0", "piece 0 1"),
-    ("piece 0 0 40", "piece 0 0 -40"), ("piece 0 0 40", "piece 0 0 \uff14\uff10"),
-    ("piece 0 0 40", "peace 0 0 40"),
-    ("piece 0 0 40 0", "piece 0 0 40 1"), ("piece 0 0 40", "piece 0 0 040"),
+    ("root: 0 1", "root: 1/2 1/2"), ("rotation: 0 1", "rotation: 1/2 0"),
+    ("rotation: 0 1", "rotation: 0 1\nrotation: 1 1"), ("rotation: 0 1\n", ""),
+    ("frame: 1", "frame: 0"), ("frame: 1", "frame: 1 0 0 1"), ("alpha: 1", "alpha: 0"),
+    ("alpha: 1", "alpha: -1"), ("rho: 0.3", "rho: 0.3 0.3"), ("rho: 0.3", "rho: 0"),
+    ("pieces: 1", "pieces: 0"), ("pieces: 1", "pieces: 2"), ("piece 0 0", "piece -1 1"),
+    ("piece 0 0", "piece 0 1"), ("piece 0 0 40 0", "piece 0 0 40 1"),
     (" 40 0 %d\n" % len(GOLDEN), " 40 0 %d\n" % (len(GOLDEN) - 1)),
     (" 40 0 %d\n" % len(GOLDEN), " 40 0 %d\n" % (len(GOLDEN) + 1)),
-    (FIRST, FIRST + "\n" + FIRST), (FIRST, "-" + FIRST), (FIRST, "0 0 0 0"), (FIRST, "0" + FIRST),
-    (FIRST, FIRST.upper()), (FIRST, FIRST + " 0 0"), (FIRST, "1 1 " + GOLDEN[0]),
-    (FIRST, "1 0 0x" + GOLDEN[0]), (FIRST, "1 0 +" + GOLDEN[0]),
-    (FIRST, "1 0 -0 " + GOLDEN[0].split()[1]),
-    (FIRST, FIRST.replace(" ", "  ")), (FIRST, FIRST + " "), (FIRST, ""), (FIRST, "1 0 1_0 0"),
-    (SECOND, "1 0 " + GOLDEN[1]), (FIRST, "\u0661 0 " + GOLDEN[0]), (FIRST, "1/1 0 " + GOLDEN[0]),
+    (FIRST, FIRST + "\n" + FIRST), (FIRST, "-" + FIRST), (FIRST, "0 0 0 0"),
+    (FIRST, "1 1 " + GOLDEN[0]), (FIRST, ""), (SECOND, "1 0 " + GOLDEN[1]),
 ]
 # True or false, it is more than the checker undertakes.
 TOO_MUCH = [
@@ -735,44 +715,6 @@ def random_entry(rng, ring, is_real, scale):
         found.append([int(rng.uniform(-1, 1) * scale * ring.one * 0.3 ** (length + at))
                       for length in ring.box.lengths for at in range(step)])
     return tuple(found) if not is_real else (found[0], None)
-
-
-@pytest.mark.parametrize("n, degree", [(1, 0), (2, 0), (1, 4), (2, 3)])
-@pytest.mark.slow
-def test_products_and_exponentials_are_within_their_radius(n, degree):
-    """At points of the strip, where the norm bounds functions."""
-    rng = random.Random(n + 10 * degree)
-    norm = field.Norm([[1, 1], [1, -1]], (1, 3), [(1, 0), (0, 1)]) if n == 2 \
-        else field.Norm([[1]], (1,), [(1,)])
-    ring = series.Ring(series.Box(norm, 12, degree), Fraction(9, 8), 70)
-    unit = mp.mpf(2) ** (ring.bits + series.FINE)
-    for is_real in (True, False):
-        f, g = [ring.series(n, n, [random_entry(rng, ring, is_real, 1.0) for _ in range(n * n)])
-                for _ in range(2)]
-        product = ring.multiply(f, g)
-        h = ring.series(1, 1, [random_entry(rng, ring, is_real, 0.3)])
-        power = ring.exponential(h)
-        for _ in range(3):
-            theta, s = [mp.mpf(rng.uniform(0, 6)) for _ in range(n)], mp.mpf(rng.uniform(-1, 1))
-            exact = sum(value(f, ring, i, theta, s) * value(g, ring, i * n, theta, s)
-                        for i in range(n))
-            assert abs(value(product, ring, 0, theta, s) - exact) <= product.radius / unit
-            assert abs(value(power, ring, 0, theta, s) - mp.exp(value(h, ring, 0, theta, s))) \
-                <= power.radius / unit
-        assert product.radius / unit < 0.3 and power.radius / unit < 0.1
-
-
-def test_norms_of_matrices_are_spectral():
-    norm = field.Norm([[1]], (1,), [(1,)])
-    ring = series.Ring(series.Box(norm, 0, 0), Fraction(2), 60)
-    rng = random.Random(3)
-    for _ in range(20):
-        numbers = [complex(rng.uniform(-1, 1), rng.uniform(-1, 1)) for _ in range(4)]
-        f = ring.series(2, 2, [([int(z.real * ring.one)], [int(z.imag * ring.one)])
-                               for z in numbers])
-        exact = mp.svd_c(mp.matrix([numbers[:2], numbers[2:]]), compute_uv=False)[0]
-        found = mp.mpf(ring.norm(f)) / 2 ** (ring.bits + series.FINE)
-        assert exact - 1e-12 < found < exact * (1 + 1e-7)
 
 
 def constant_function(ring, number, radius):
@@ -1223,9 +1165,10 @@ def surface(tmp_path_factory):
 
 def resealed(text, pattern, new):
     """The certificate with a line that is another, and the checksum right."""
-    text, count = re.subn("(?m)^%s" % pattern, new, text[:text.rindex("checksum: ")], count=1)
+    text, count = re.subn("(?m)^%s" % pattern, new, text, count=1)
     assert count
     return sealed(text)
+
 
 
 @pytest.mark.slow

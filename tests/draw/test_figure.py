@@ -4,7 +4,6 @@ import itertools
 import math
 import os
 import random
-import re
 import subprocess
 import sys
 from collections import Counter
@@ -20,7 +19,6 @@ from converse.prover.tree import leaves
 
 SHA = "0123456789abcdef" * 4
 ELSEWHERE = {"xstar": ("9", "9"), "v": ("0.5", "0.5", "0.25", "0.25")}      # no x* in the figure
-LONG = "0.3085123456789012345678901234567890123456"     # the centre of a range of forty digits
 def drawn(proof, dpi=50):
     """The pixels of the prisms' square as rows of (red, green, blue), the top one first."""
     matplotlib = pytest.importorskip("matplotlib")
@@ -85,16 +83,6 @@ def random_tree(rng, depth):
     if depth == 0 or rng.random() < 0.1:
         return rng.choice("PPSS")
     return rng.choice("01") + random_tree(rng, depth - 1) + random_tree(rng, depth - 1)
-
-
-def random_leaves(rng, count):
-    """A tree of so many leaves, about as deep everywhere."""
-    nodes, open_cells = [], [count]
-    while open_cells:
-        n = open_cells.pop()
-        nodes.append(rng.choice("01") if n > 1 else "P")
-        open_cells += [n - n // 2, n // 2] if n > 1 else []
-    return "".join(nodes)
 
 
 def test_a_real_proof(root):
@@ -184,16 +172,6 @@ def test_place_of_the_starting_point(made_up):
         assert found == (place and pytest.approx(place, abs=1e-12))
 
 
-TITLES = {
-    "plain": {}, "as printed": {"as_printed": True},
-    "part": {"v": ("0.5", "1", "0.25", "1"), "as_printed": True, "sha256": SHA},
-    "long": {"a": LONG, "sha256": SHA},
-    "strange version": {"version": "1(\\2" + "0" * 120, "sha256": SHA},
-    "narrow": {"v": ("1.2345678901234567", "-0.3333", "1e-15", "1e-5")},
-    "flat": {"v": ("1", "0.5", "1", "0")},
-}
-
-
 def words(proof):
     """The texts of the figure."""
     pytest.importorskip("matplotlib")
@@ -232,65 +210,6 @@ def test_the_colour_bar_counts_the_proved(made_up, monkeypatch):
     assert bar.get_ylabel().startswith("proved (1):")
     assert not any("proved" in text.get_text() for text in axes.get_legend().get_texts())
     assert made_up("P", **ELSEWHERE).plot().axes[0].get_legend() is None
-
-
-def test_parameters_that_move_together(made_up):
-    """The segment is no box; and the numbers of both are exact."""
-    proof = made_up("P", a=LONG, method="loewner")
-    low, high = Fraction(LONG) - Fraction("0.00125"), Fraction(LONG) + Fraction("0.00125")
-    text = " ".join(words(proof).split())
-    for name, k in (("a", 1), ("b", 1), ("c", 2)):
-        found = re.search(r"%s in \[([\d.]+), ([\d.]+)\]" % name, text)
-        assert [Fraction(x) for x in found.groups()] == [k * low, k * high]
-    text = " ".join(words(proof.with_tree(0, problem=proof.problem.tied())).split())
-    found = re.search(r"\(a, b, c\) on the segment from \((.*?)\) to \((.*?)\)", text)
-    assert [[Fraction(x) for x in part.split(", ")] for part in found.groups()] \
-        == [[low, low, 2 * low], [high, high, 2 * high]]
-    assert "<" not in text
-
-
-@pytest.mark.slow
-def test_legend_overlaps_nothing(made_up):
-    """With four kinds and x*, small or large."""
-    pytest.importorskip("matplotlib")
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    for options in TITLES.values():
-        figure = made_up("20PU01PS1U", **options).plot()
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-        axes = figure.axes[0]
-        assert len(axes.get_legend().get_texts()) >= 4
-        parts = [axes.title, axes.xaxis.label, axes.get_legend(), *axes.texts]
-        boxes = [part.get_window_extent(canvas.get_renderer()) for part in parts]
-        boxes.append(axes.bbox)
-        boxes += [label.get_window_extent(canvas.get_renderer())
-                  for label in axes.get_xticklabels()][:2]
-        for i, one in enumerate(boxes):
-            for other in boxes[i + 1:-2] + [boxes[-2]] * (i < len(boxes) - 2):
-                assert not one.overlaps(other), options
-        for one in axes.get_legend().get_texts():
-            for other in axes.get_legend().get_texts():
-                a, b = (x.get_window_extent(canvas.get_renderer()) for x in (one, other))
-                assert one is other or not a.overlaps(b)
-
-
-@pytest.mark.parametrize("count, most", [(plot.RASTER, 300000), (30000, 200000)])
-@pytest.mark.slow
-def test_size_of_svg(made_up, count, most):
-    pytest.importorskip("matplotlib")
-    assert len(plot.encode(made_up(random_leaves(random.Random(4), count)).plot(), "svg")) < most
-
-
-@pytest.mark.parametrize("v", [
-    ("1", "1", "0", "0"), ("1.2345678901234567", "-0.5", "1e-25", "1e-9"), ("1e20", "1", "1", "1"),
-    ("0.5", "0", "0.001", "1e-300")])
-@pytest.mark.slow
-def test_regions_without_width(made_up, shown, recwarn, v):
-    """And those that doubles cannot resolve."""
-    rows = shown(made_up("0P1PS", v=v, xstar=("9", "9")))
-    assert share(rows, is_proved) == pytest.approx(0.75, abs=0.02)
-    assert not recwarn.list
 
 
 @pytest.mark.parametrize("ending", [".svg", ".png", ".pdf", ".SVG", ".ps", ".eps"])
@@ -338,43 +257,6 @@ def test_without_a_caption(made_up, tmp_path):
         plot.write(proof, tmp_path / "a.svg", caption)
         said = (tmp_path / "a.svg").read_text()
         assert (SHA in said) == ("undecided whether" in said) == caption
-
-
-@pytest.mark.parametrize("raster", [0, 10 ** 9])
-@pytest.mark.slow
-def test_fonts(made_up, monkeypatch, raster):
-    """Eight points or more."""
-    pytest.importorskip("matplotlib")
-    from matplotlib.text import Text
-
-    monkeypatch.setattr(plot, "RASTER", raster)
-    fig = made_up("2U01PS?", sha256=SHA).plot()
-    plot.encode(fig, "png")
-    assert min(text.get_size() for text in fig.findobj(Text) if text.get_text()) >= 8
-
-
-# What those see who lack the green or the red cones: of linear red, green and blue (Machado,
-# Oliveira and Fernandes 2009).
-BLIND = {"deuteranopia": ((0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413),
-                          (-0.011820, 0.042940, 0.968881)),
-         "protanopia": ((0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216),
-                        (-0.003882, -0.048116, 1.051998))}
-
-
-@pytest.mark.parametrize("kind", BLIND)
-def test_the_colour_blind_tell_what_is_undecided(kind):
-    """From all that may lie beside it: by its colour or by how light it is."""
-    pytest.importorskip("matplotlib")
-    from matplotlib.colors import to_rgb
-
-    def seen(colour):
-        linear = [x ** 2.2 for x in to_rgb(colour)]
-        return [max(0, sum(a * b for a, b in zip(row, linear))) ** (1 / 2.2) for row in BLIND[kind]]
-
-    for undecided, others in ((plot.COLOURS["U"], [plot.COLOURS[kind] for kind in "PS?"]),
-                              (plot.EDGES["U"], ["0.85", "1.0", *plot.DEPTHS])):
-        for other in others:
-            assert math.dist(seen(undecided), seen(other)) > 0.3
 
 
 def test_without_matplotlib(made_up, tmp_path, monkeypatch):

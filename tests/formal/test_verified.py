@@ -17,6 +17,7 @@ from fractions import Fraction
 import pytest
 import test_parts as by_hand
 from conftest import ROOT, around
+from files import sealed, tree_of, with_line
 
 from converse import Problem, check, prove, read_input
 from converse.model.exact import decimal_text
@@ -71,24 +72,13 @@ def about(text, frame, v0, v1):
     return text
 
 
-def sealed(text):
-    """With the checksum that belongs to it."""
-    body = text[:text.rindex("checksum: ")]
-    return "%schecksum: sha256 %s\nend\n" % (body, hashlib.sha256(body.encode()).hexdigest())
-
-
 def with_field(text, name, value):
-    return sealed(re.sub("(?m)^%s: .*$" % re.escape(name), lambda _: name + ": " + value, text,
-                         count=1))
+    return sealed(with_line(text, name, value))
 
 
 def with_tree(text, tree):
     return sealed(text[:text.index("\ntree:\n") + 7] + tree + "\n"
                   + text[text.rindex("checksum: "):])
-
-
-def tree_of(text):
-    return text[text.index("\ntree:\n") + 7:text.rindex("checksum: ")].replace("\n", "")
 
 
 def both(tmp_path, text):
@@ -204,18 +194,6 @@ def test_half_of_a_coordinate_that_is_alone(texts, tmp_path):
         assert agree(tmp_path, about(text, "0 1 1 0", v0, "1 1")) == status
 
 
-@pytest.mark.parametrize("change, status", [
-    (lambda text: text.replace("linked: 0\n", ""), REJECTED),
-    (lambda text: text.replace("linked: 0", "linked: 1"), REJECTED),
-    *((lambda text, n=n: text.replace("proof 6", "proof %s" % n), UNUSABLE)
-      for n in (2, 3, 4, 5, 7, 66)),
-    (lambda text: text.replace("tree:\nP", "tree:\na").replace("proved: 1", "proved: 0"),
-     REJECTED)])
-def test_damage_of_links_and_versions(texts, tmp_path, change, status):
-    text = about(texts["plain"], "1 0 0 1", "1 1", "1 1")
-    assert agree(tmp_path, sealed(change(text))) == status
-
-
 # ---- parts that are linked to each other: the attack of the other checker's tests
 
 @pytest.fixture(scope="module")
@@ -262,51 +240,6 @@ def test_where_a_link_leads_out(links, tmp_path, name, end, margin):
             "region\n")
 
 
-def test_links_are_for_the_parameters_of_their_leaf(tmp_path):
-    """What leads into the region for half of the parameters need not for all of them."""
-    waves = ["%s -0.004" % wave for wave in by_hand.SYMMETRIC[:2]] + [
-        by_hand.SYMMETRIC[2] + " -0.008"]
-    tree = by_hand.found(waves=waves)
-    link = by_hand.linked("2" + tree + tree, margin=EDGE, waves=waves)
-    assert agree(tmp_path, by_hand.file_of(**link)) == PART
-    at = link["tree"].index("a") - 1
-    whole = tree[:at] + "a" + tree[at + 1:]
-    assert agree(tmp_path, by_hand.file_of(**{**link, "tree": whole})) == NOT_CONFIRMED
-
-
-def test_linked_leaves_are_numbered_as_the_other_checker_numbers_them(links, tmp_path):
-    """Among those that are linked to the same part."""
-    tree = links[1]["tree"]
-    at = tree.rindex("P")
-    assert tree.index("a") < at
-    (_, said), (_, _, err) = both(tmp_path, by_hand.file_of(
-        **{**links[1], "tree": tree[:at] + "b" + tree[at + 1:]}))
-    assert said.startswith("not confirmed: linked leaf 1 of 1 (")
-    assert ": not confirmed: linked leaf 1 of 1 is linked to part b, but " in err
-
-
-@pytest.mark.parametrize("name, status", [
-    *[(name, (VERIFIED, PART)) for name in by_hand.FOLDS],
-    *[(name, (NOT_CONFIRMED,)) for name in by_hand.FOLDS_NOT]])
-def test_parts_that_stand_for_their_mirror_images(tmp_path, name, status):
-    shape = {**by_hand.FOLDS, **by_hand.FOLDS_NOT}[name]
-    assert agree(tmp_path, by_hand.file_of(**by_hand.folded_link(**shape))) in status
-
-
-@pytest.mark.parametrize("name", by_hand.STICKS_OUT)
-def test_links_that_lead_out(links, tmp_path, name):
-    """As the other checker says; the file that these changes were made for is beyond this one."""
-    agree(tmp_path, by_hand.file_of(**by_hand.STICKS_OUT[name](links[0])))
-
-
-@pytest.mark.parametrize("name", by_hand.WRONG_STRUCTURE)
-def test_wrong_parts(links, tmp_path, name):
-    path = tmp_path / "proof"
-    path.write_text(by_hand.WRONG_STRUCTURE[name][0](links[1]), newline="")
-    status, out, err = run(path)
-    assert (status, out, err.count("\n")) == (REJECTED, "", 1), err
-
-
 def test_thousands_of_parts(tmp_path):
     """Too many parts are rejected before the text is divided among them."""
     text = by_hand.file_of("P").replace("checksum: ", "part: \n" * 20000 + "checksum: ")
@@ -346,105 +279,6 @@ def test_regions_that_move(moving, tmp_path):
     out = run(tmp_path / "proof")[1]
     assert "\nx* of part b : %s\n" % by_hand.XSTAR in out
     assert agree(tmp_path, by_hand.file_of(**{**moving, "v0": "0.5362 0.25"})) == PART
-
-
-def test_shifts_are_in_the_order_of_the_parameters(tmp_path):
-    """The first parameter is cut, so that what it moves, and only it, needs less room."""
-    lines, trees = [("0.5462 0.2602", "0.5 0.5"), ("0.5262 0.2602", "0.5 0.5")], []
-    for ranges in lines:
-        claim = by_hand.claim_of(by_hand.file_of("P", *ranges, waves=by_hand.APART))
-        trees.append(by_hand.found_tree(replace(claim, shifts=((Fraction(1, 50), Fraction(0)),
-                                                                (Fraction(0),) * 2)), 5000))
-    for shifts, status in (" 0.02 0", VERIFIED), (" 0 0.02", NOT_CONFIRMED):
-        parts = [(by_hand.XSTAR, v0 + shifts, v1, tree) for (v0, v1), tree in zip(lines, trees)]
-        assert agree(tmp_path, by_hand.file_of(
-            "2ab", waves=by_hand.APART, parts=parts)) == status
-
-
-def test_regions_that_need_not_move(links, tmp_path):
-    """Two numbers in one range or both, or zeros."""
-    assert agree(tmp_path, by_hand.file_of(**links[1])) == VERIFIED
-    still = {**links[0], "waves": ["%s 0" % wave for wave in by_hand.SYMMETRIC]}
-    for more in ("", " 0"), (" 0", " 0.0"), (" 1e-12", ""), ("", " -0.000000000001"):
-        (xstar, v0, v1, tree), = still["parts"]
-        moved = {**still, "parts": [(xstar, v0 + more[0], v1 + more[1], tree)]}
-        assert agree(tmp_path, by_hand.file_of(**moved)) == VERIFIED
-
-
-@pytest.mark.parametrize("part, changes", [
-    (0, {"v0": "0.5362 0.28019999999999999999 0.01 0.02"}),
-    (0, {"v1": "0.5 0.53499999999999999999 -0.03 0.005"}),
-    (0, {"v0": "0.5362 0.2802 0.01 0.0200000000000000000001"}),
-    (0, {"v0": "0.5362 0.2802"}),
-    (1, {"v0": "0.5362 0.2802"}),
-    (1, {"v1": "0.5 0.535"}),
-    (1, {"v0": "0.5362 0.2802 0.02 0.01"}),                 # in another order
-    (1, {"v0": "0.5362 0.2802 -0.01 -0.02"}),
-    (1, {"v0": "0.5362 0.2802 -0.03 0.005", "v1": "0.5 0.535 0.01 0.02"}),
-    (1, {"v1": "0.5 0.535 -0.0300000000000000000001 0.005"})])
-def test_links_between_regions_that_move(moving, tmp_path, part, changes):
-    """A region that is not where the other one is for all parameters."""
-    (tmp_path / "proof").write_text(by_hand.file_of(**by_hand.with_part(moving, part, **changes)))
-    status, out, err = run(tmp_path / "proof")
-    assert (status, out) == (NOT_CONFIRMED, "")
-    assert re.search(": not confirmed: (part a: )?linked leaf 1 of 1 is linked to part [ab], but ",
-                     err)
-
-
-@pytest.mark.parametrize("part, changes, status", [
-    (0, {"v0": "0.5362 0.2802 0.01"}, REJECTED),
-    (0, {"v0": "0.5362 0.2802 0.01 0.02 0"}, REJECTED),
-    (0, {"v0": "0.5362"}, REJECTED),
-    (0, {"v1": "0.5 0.535  -0.03 0.005"}, REJECTED),
-    (0, {"v1": "0.5 0.535 -0.03 0.005 "}, REJECTED),
-    (1, {"v1": "0.5 0.535 -0.03 1/2"}, REJECTED),
-    (1, {"v1": "0.5 0.535 -0.03 nan"}, REJECTED),
-    (1, {"v1": "0.5 -0.535 -0.03 0.005"}, REJECTED),
-    (1, {"v1": "0.5 0.535 -0.03 1e301"}, NOT_CONFIRMED),
-    (1, {"v1": "0.5 0.535 -0.03 0.005" + 3000 * "0"}, NOT_CONFIRMED),
-    (1, {"xstar": "0.858 0.858 0 0"}, REJECTED),
-    (0, {"tree": "0bS"}, REJECTED)])
-def test_wrong_shifts(moving, tmp_path, part, changes, status):
-    assert agree(tmp_path, by_hand.file_of(**by_hand.with_part(moving, part, **changes))) == status
-
-
-def test_the_range_with_a_negative_half_width_is_named(moving, tmp_path):
-    """Whichever checker says it."""
-    for link, name in (
-            (by_hand.with_part(moving, 1, v1="0.5 -0.535 -0.03 0.005"), "part b's v1"),
-            ({**moving, "v0": "0.5362 -0.25"}, "the header's v0")):
-        assert agree(tmp_path, by_hand.file_of(**link)) == REJECTED
-        assert run(tmp_path / "proof")[2].endswith("%s: the half-width is negative\n" % name)
-
-
-def test_shifts_of_the_header(moving, tmp_path):
-    """It has none."""
-    for name, value in zip(("v0", "v1"), by_hand.HALF):
-        assert agree(tmp_path, by_hand.file_of(**{**moving, name: value + " 0 0"})) == REJECTED
-
-
-def test_no_mirror_images_where_the_region_moves(tmp_path):
-    """A region in the plain frame may be its own mirror image, but not if it moves."""
-    shape = {"frame": "1 0 0 1", "waves": ["%s 0.0001" % wave for wave in by_hand.SYMMETRIC]}
-    lower, corner = (by_hand.found(*region, **shape) for region in (
-        ("-0.5 0.5", "0 1"), ("0.5 0.5", "0.5 0.5")))
-    for more, status in ("", VERIFIED), (" 0", VERIFIED), (" 1e-9", REJECTED):
-        part = (by_hand.XSTAR, "0 1.1" + more, "0 1.1" + more, "0%s1S%s" % (lower, corner))
-        text = by_hand.file_of(**{**shape, "tree": "a", "v0": "0 1", "v1": "0 1", "parts": [part]})
-        assert agree(tmp_path, text) == status
-    assert "part a: a leaf is symmetric, and the region has shifts" in run(tmp_path / "proof")[2]
-
-
-def test_a_part_that_is_not_proved(links, tmp_path):
-    """Its leaves are checked like others, and named."""
-    for link, letter in zip(links, "ab"):
-        wide = by_hand.with_part(link, "ab".index(letter), xstar="-1.5 -1.5", v0="0 9", v1="0 9",
-                                  tree="P")
-        path = tmp_path / "proof"
-        path.write_text(by_hand.file_of(**wide))
-        status, out, err = run(path)
-        assert (status, out) == (NOT_CONFIRMED, "")
-        assert ": not confirmed: part %s: proved leaf 1 of 1 is not excluded" % letter in err
 
 
 @pytest.mark.parametrize("name", GENERAL)
@@ -497,12 +331,6 @@ def test_claims_that_are_too_large(texts, tmp_path):
         assert agree(tmp_path, forged) in (REJECTED, NOT_CONFIRMED)
     low = texts["standard-63-64.in"]
     assert agree(tmp_path, with_field(low, "at once", "yes")) in (REJECTED, NOT_CONFIRMED)
-
-
-@pytest.mark.parametrize("frame", ["0 0 0 0", "1 0 0 0", "1 2 2 4", "1 1 1 1"])
-def test_frames_that_do_not_cover_the_torus(texts, tmp_path, frame):
-    """The cells then cover x[1] on a line or at a point."""
-    assert agree(tmp_path, with_field(texts["plain"], "frame", frame)) == REJECTED
 
 
 def test_no_tori_at_small_parameters(texts, tmp_path):
@@ -740,21 +568,6 @@ def test_a_process_that_dies_is_missed(busy):
     os.kill(children(busy)[0], signal.SIGKILL)
     out, err = busy.communicate(timeout=PATIENCE)
     assert busy.returncode == UNUSABLE and not out and err.count("\n") == 1
-
-
-def test_nohup(texts, tmp_path):
-    """What was ignored is so in all processes."""
-    path = tmp_path / "proof"
-    path.write_text(texts["two-harmonics.json"])
-    with start("--jobs", 2, path, preexec_fn=lambda: signal.signal(
-            signal.SIGHUP, signal.SIG_IGN)) as process:
-        wait_until(lambda: len(children(process)) == 2, process)
-        for pid in [*children(process), process.pid]:
-            os.kill(pid, signal.SIGHUP)
-        time.sleep(0.5)
-        assert process.poll() is None and len(children(process)) == 2
-        process.terminate()
-        assert process.wait(timeout=PATIENCE) == 143
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])

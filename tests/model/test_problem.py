@@ -91,15 +91,9 @@ def changed(number, line):
     (changed(1, "nan 0.1"), 1, "'nan'"), (changed(1, "0.3 inf"), 1, "'inf'"),
     (changed(1, "0.3 -Infinity"), 1, "Infinity"), (changed(3, "1e400 1"), 3, "out of range"),
     (changed(3, "1 1e-400"), 3, "out of range"), (changed(3, "1 1e9999999999999"), 3, "1e99"),
-    (changed(3, "1 1e999999999"), 3, "out of range"), (changed(3, "0e999999999 0"), 3, "range"),
-    (changed(3, "1" + "0" * 400 + " 0"), 3, "out of range"),
     (changed(2, "0." + "3" * 1000 + " 0"), 2, "1002 characters; give at most 1000"),
     (changed(2, "0.3085 -0.00125"), 2, "negative"), (changed(6, "1 -1"), 6, "negative"),
-    (changed(5, "1.0"), 5, "1 number where two"), (changed(5, "1 1 1"), 5, "3 numbers where two"),
-    (changed(1, "0x10 1"), 1, "0x10"), (changed(1, "1_0 1"), 1, "1_0"),
     (changed(1, "\u0661 1"), 1, "not a decimal"), (changed(1, "1/0 1"), 1, "1/0"),
-    (changed(1, "1/3/5 1"), 1, "1/3/5"),
-    (changed(1, "0.3,1"), 1, "0.3,1"), (changed(1, ". 1"), 1, "'.'"),
 ])
 def test_mistakes(text, line, words):
     with pytest.raises(InputError) as caught:

@@ -15,7 +15,6 @@ pytest.importorskip("matplotlib")
 
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
-from sums import fourier
 
 from converse.orbits import pictures  # noqa: E402
 
@@ -63,23 +62,6 @@ def test_a_row_for_each_state(plane, line):
     for panel, state in zip(figure.axes, line):
         assert np.array_equal(data(panel), np.column_stack([state.x, state.momenta]))
         assert panel.get_title(loc="left").startswith("ε = %r, 3/8: minimum" % state.eps)
-
-
-@pytest.mark.slow
-def test_files(plane, line, saddle):
-    for kind, start in START.items():
-        assert pictures.states_picture(line, kind).startswith(start)
-    assert pictures.states_picture([saddle]) == pictures.states_picture([saddle])
-    assert pictures.kind(saddle) == "saddle"
-    assert pictures.exponents_words(saddle) == "exponents %.4f, %.4f" % tuple(saddle.exponents)
-    for number in 0, pictures.MOST_STATES + 1:
-        with pytest.raises(ValueError, match="choose fewer eps"):
-            pictures.states_picture([saddle] * number)
-    with pytest.raises(ValueError, match="svg, png, pdf, not gif"):
-        pictures.states_picture([saddle], "gif")
-    strange = fourier({(1, 0): (1, 0), (0, 1): (1, 0)}, "$x^{")
-    picture = pictures.states_picture(orbits.follow(strange, (2, 3), 7, [0.001]))
-    assert picture.startswith(b"<?xml")
 
 
 def test_a_figure_of_a_state(plane, line):
@@ -176,21 +158,6 @@ def test_a_portrait_of_one_angle(system, period):
         r"$y$  mod $2\pi$", r"$J$  mod $2\pi$"))
     assert panel.get_xlim() == panel.get_ylim() == (0, period)
     assert not panel.get_title()
-
-
-def test_a_portrait_in_one_line():
-    panel, = orbits.standard.portrait(eps=0.97).axes
-    assert len(panel.get_lines()) == 20 and {len(data(panel, k)) for k in range(20)} == {501}
-    axes = Figure().subplots()
-    assert orbits.standard.portrait(eps=0.97, ax=axes, color="red", steps=-3) is axes
-    assert axes.get_lines()[0].get_color() == "red" and len(data(axes)) == 4
-    axes = Figure().subplots()
-    orbits.standard.portrait(0.1, 0.2, 3, eps=0.97, ax=axes)            # one orbit
-    orbits.standard.portrait(np.zeros((2, 3)), 0.2, 3, eps=0.97, ax=axes)
-    assert len(axes.get_lines()) == 1 + 6
-    colours = {each.get_color() for each in orbits.standard.portrait(
-        [0.1, 0.2, 0.3], 0.0, 3, eps=0.9, color=None).axes[0].get_lines()}
-    assert len(colours) == 3
 
 
 def test_projections():

@@ -6,13 +6,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from files import sealed
 
 from converse import ConverseError, MuldoonMap, StandardMap, SymplecticMap, check, tori
 from converse.check.portrait import check_places, patch_of_strip, read_portrait, read_region
 from converse.model.problem import Problem
 from converse.prover import tree
 from converse.prover.portrait import Portrait, portray, pruned
-from converse.storage import files
 
 from truth import TORTURE
 
@@ -35,11 +35,6 @@ def strips(tmp_path_factory):
     """A portrait of k = 0.9 in 60 strips, and its file."""
     path = tmp_path_factory.mktemp("portrait") / "strips.portrait"
     return portray(standard("0.9"), path=path, columns=60, depth=10), path
-
-
-def resealed(text):
-    body = text[:text.index("checksum: ")]
-    return body + "checksum: sha256 %s\nend\n" % files.sha256(body)
 
 
 def prisms_of(region):
@@ -173,7 +168,7 @@ def test_altered_portraits_are_rejected(strips, tmp_path, old, new, why):
     path.write_bytes(text.encode())
     with pytest.raises(check.Rejected, match="wrong checksum"):
         check.verify(path)
-    path.write_bytes(resealed(text).encode())
+    path.write_bytes(sealed(text).encode())
     with pytest.raises(check.Rejected, match=why):
         check.verify(path)
 
@@ -242,12 +237,12 @@ def test_regions_must_hold_the_successors_for_all_of_the_strip(strips):
                           for word, sign in zip(words[1:3], (end, -1))]
             text = "".join([*lines[:at + n], " ".join(words), *lines[at + n + 1:]])
             with pytest.raises(check.Rejected, match=refusal):
-                read_portrait(resealed(text).encode())
+                read_portrait(sealed(text).encode())
             shift = check.decimal_text(Fraction(words[3]) + end * Fraction("0.01"))
             words = [*lines[at + n].split(" ")[:3], shift, words[4]]
             text = "".join([*lines[:at + n], " ".join(words), *lines[at + n + 1:]])
             with pytest.raises(check.Rejected, match=refusal):
-                read_portrait(resealed(text).encode())
+                read_portrait(sealed(text).encode())
 
 
 @pytest.mark.slow
@@ -325,7 +320,7 @@ def test_what_was_only_read_is_told_in_the_headline(strips, tmp_path):
         "believed\n")
     text = path.read_text().replace("program: converse ", "program: converse 4.", 1)
     other = tmp_path / "other.portrait"
-    other.write_text(resealed(text))
+    other.write_text(sealed(text))
     assert Portrait.load(other)._text() == other.read_text()
     assert portray(path=other, resume=True).complete            # only described
     again.found.pop(min(again.found))

@@ -1,13 +1,8 @@
 """The charts: drawn from made-up numbers; the command is not run to its end, which takes long."""
 
-import csv
-import io
 import math
 import os
-import re
 import runpy
-import subprocess
-import sys
 import xml.etree.ElementTree as ET
 
 import chart
@@ -59,25 +54,6 @@ def test_charts(name, kind):
         assert b"dc:date" not in data and data == chart.chart(name, ROWS[name], kind)
 
 
-def test_files(quick, tmp_path, capsys):
-    place = tmp_path / "new" / "place"
-    assert chart.main([str(place), "--quick", "--format", "svg"]) == 0
-    out, err = capsys.readouterr()
-    assert err == ""
-    assert sorted(os.listdir(place)) == sorted(
-        "chart-%s.%s" % (name, ending) for name in ROWS for ending in ("svg", "csv"))
-    for name, rows in ROWS.items():
-        lines = list(csv.reader(io.StringIO((place / ("chart-%s.csv" % name)).read_text())))
-        assert tuple(lines[0]) == chart.CHARTS[name][0] and len(lines) == len(rows) + 1
-        for words, row in zip(lines[1:], rows):
-            for word, item in zip(words, row):
-                assert word == item if isinstance(item, str) else float(word) == item
-    assert out.count("\n") == sum(map(len, ROWS.values())) + 1
-    assert "wall: method thesis, epsilon 0.0280, prisms 1, deepest_cut 0, proved yes\n" in out
-    last = out.splitlines()[-1]
-    assert last.startswith("written: ") and all("chart-%s.svg" % name in last for name in ROWS)
-
-
 def test_a_table_is_drawn_again(quick, tmp_path, monkeypatch, capsys):
     """And what is in it is what is drawn; nothing is measured."""
     assert chart.main([str(tmp_path), "--only", "wall"]) == 0
@@ -94,77 +70,6 @@ def test_a_table_is_drawn_again(quick, tmp_path, monkeypatch, capsys):
     assert "measure anew" in one_line(capsys)[1]
 
 
-def test_bad_places(quick, tmp_path, capsys):
-    (tmp_path / "file").write_text("")
-    assert chart.main([str(tmp_path / "file")]) == common.BAD
-    assert "file" in one_line(capsys)[1]
-    (tmp_path / "chart-wall.csv").mkdir()
-    assert chart.main([str(tmp_path)]) == common.BAD
-    out, err = one_line(capsys)
-    assert out == "" and "chart-wall.csv" in err        # before anything is measured
-    if os.geteuid():
-        (tmp_path / "closed").mkdir(mode=0o500)
-        assert chart.main([str(tmp_path / "closed")]) == common.BAD
-        one_line(capsys)
-
-
-def test_bad_usage(capsys):
-    assert chart.main(["--format", "gif"]) == common.BAD
-    assert "--help" in one_line(capsys)[1]
-    assert chart.main(["a", "b"]) == common.BAD
-    one_line(capsys)
-
-
-def test_no_matplotlib(tmp_path, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert chart.main([str(tmp_path / "place")]) == common.BAD
-    assert "pip install 'converse-kam[plot]'" in one_line(capsys)[1] and not os.listdir(tmp_path)
-
-
-def test_interrupted(quick, tmp_path, monkeypatch, capsys):
-    def interrupted(quick):
-        yield ROWS["wall"][0]
-        raise KeyboardInterrupt
-
-    monkeypatch.setitem(chart.CHARTS, "wall", (*chart.CHARTS["wall"][:1], interrupted,
-                                               chart.CHARTS["wall"][2]))
-    assert chart.main([str(tmp_path)]) == 130
-    one_line(capsys)
-    assert (tmp_path / "chart-width.svg").exists() and not (tmp_path / "chart-wall.svg").exists()
-
-
-def test_help(tmp_path):
-    done = subprocess.run([sys.executable, ROOT / "experiments" / "chart.py", "--help"],
-                          cwd=tmp_path,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    assert done.returncode == 0 and done.stderr == b""
-    assert "directory" in done.stdout.decode().lower()
-
-
-def test_caption():
-    text = chart.machine()
-    assert re.fullmatch(r".*\d+ cores?", text)
-
-
-@pytest.mark.parametrize("name", sorted(chart.CHARTS))
-def test_readable(name, monkeypatch):
-    """Letters of eight points or more; no release is called this one, which will be another's; and
-    the caption may be left out."""
-    pytest.importorskip("matplotlib")
-    from matplotlib.text import Text
-
-    figures, encode = [], plot.encode
-    monkeypatch.setattr(plot, "encode", lambda figure, kind, **options: (
-        figures.append(figure), encode(figure, kind, **options))[1])
-    assert chart.chart(name, ROWS[name], "png") != chart.chart(name, ROWS[name], "png", False)
-    with_words, without = ([text for text in figure.findobj(Text) if text.get_text().strip()]
-                           for figure in figures)
-    assert min(text.get_size() for text in with_words) >= 8
-    assert not any("this release" in text.get_text() or "converse 1" in text.get_text()
-                   for text in with_words)
-    assert len(with_words) == len(without) + 1
-
-
 def drawn(name, rows):
     """The caption and all other words of a chart, and its markers."""
     pytest.importorskip("matplotlib")
@@ -174,19 +79,6 @@ def drawn(name, rows):
     caption = chart.CHARTS[name][2](figure, rows)
     words = [text.get_text() for axes in figure.axes for text in axes.texts]
     return caption, "\n".join(words), [line for axes in figure.axes for line in axes.get_lines()]
-
-
-def test_the_wall_names_its_markers():
-    """Open ones are explained where there are such, and only there."""
-    for rows in (ROWS["wall"], _pick(ROWS["wall"], "yes"), _pick(ROWS["wall"], "no")):
-        caption, _, lines = drawn("wall", rows)
-        hollow = [line for line in lines if line.get_markerfacecolor() == "white"
-                  and len(line.get_xdata())]
-        assert bool(hollow) == ("open" in caption) == bool(_pick(rows, "no"))
-
-
-def _pick(rows, word):
-    return [row for row in rows if row[-1] == word]
 
 
 def test_the_two_sides_do_not_meet():
@@ -212,23 +104,6 @@ def test_the_last_circle_of_the_diagonal():
     assert 0.0138 < below.eps < above.eps < 0.01382
     (first, head), (second, _), *_ = experiment["nobles"](2, 5, 100)
     assert head == (5,) and abs(first - above.eps) < 3e-5 and second < below.eps
-
-
-def test_the_diagonal_stops_the_sharper_method(monkeypatch, capsys):
-    """With a circle some successors on it are left; above none is, and those off it go first."""
-    experiment = runpy.run_path(str(ROOT / "experiments" / "diagonal.py"))
-    rows = list(experiment["off_diagonal"](0.0144, 0.858, 300, 60))
-    assert rows[-1][:2] == (33, 0)
-    assert rows[-2][2] < rows[-2][1] / 10 and rows[0][2] > rows[0][1] / 2
-    experiment["main"].__globals__["KEPT"] = 8000
-    experiment["SIZES"]["quick"] = {"heads": (1, 6), "least": 100, "cells": 50, "most": 40,
-                                    "eps": (0.0144, 0.0137), "xstar": (0.858, 0.86)}
-    monkeypatch.setattr(sys, "argv", ["diagonal.py", "--quick"])
-    assert experiment["main"]() == 0
-    out = capsys.readouterr().out.splitlines()
-    assert re.fullmatch(r" +0\.0138. +\[0; 5, 1, 1, 1, \.\.\.\]", out[1])
-    assert [line.split() for line in out[-2:]] == [["eps", "0.01440", "33", "33"],
-                                                   ["eps", "0.01370", "-", "-"]]
 
 
 def test_bounds_are_measured():

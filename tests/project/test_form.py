@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from test_numbers import PAGES
+from pages import PAGES
 
 from converse import SymplecticMap
 

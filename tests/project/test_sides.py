@@ -1,7 +1,5 @@
 """experiments/sides.py: what proofs cost near the frontier.  Measured where it takes no time."""
 
-import concurrent.futures
-import functools
 import xml.etree.ElementTree as ET
 
 import pytest
@@ -33,16 +31,6 @@ def test_proofs_are_measured(few, capsys):
     assert [bool(row[7]) for row in rows] == [False, True, False, True]
     assert all(row[8] == sides.converse.__version__ for row in rows)
     assert capsys.readouterr().out == ""                        # k = 0.971 is left out
-
-
-def test_what_is_not_proved_is_told(monkeypatch, capsys):
-    """Without the search for other starting points, which takes a minute: fewer cuts."""
-    monkeypatch.setattr(sides.converse, "prove", functools.partial(sides.converse.prove, depth=20))
-    monkeypatch.setattr(sides, "POINTS", {("standard", "none"): ("0.5",)})
-    monkeypatch.setattr(concurrent.futures, "ProcessPoolExecutor", lambda workers, mp_context:
-                        concurrent.futures.ThreadPoolExecutor(workers))
-    assert list(sides.measure(quick=False)) == list(sides.LONGEST)
-    assert capsys.readouterr().out == "standard none: 0.5 was not proved\n"
 
 
 def test_the_frontier_lies_between():
