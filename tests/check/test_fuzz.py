@@ -21,9 +21,11 @@ from test_tori import BODY as TORUS
 
 import converse
 from converse import InputError, Problem, Proof, StandardMap
+from converse.diagram import Diagram
 from converse.model.exact import decimal_text
-from converse.prover.portrait import portray
+from converse.prover.portrait import Portrait, portray
 from converse.storage.files import ConverseError
+from converse.tori import certificate
 
 from checker import check
 from truth import TORTURE
@@ -153,23 +155,27 @@ def formats(proof_bytes, diagram):
             diagram.encode(), portrait._text().encode()]
 
 
+LOAD = [Proof.load, Proof.load, certificate.read, Diagram.load, Portrait.load]
+
+
 @pytest.mark.parametrize("which", range(5), ids=["proof", "links", "torus", "diagram", "portrait"])
 @settings(MANY, max_examples=150 * TORTURE)
 @given(edits=edits, seal=st.booleans(), zipped=st.booleans())
 def test_any_change_of_a_file(formats, tmp_path_factory, which, edits, seal, zipped):
-    """The checker verifies a changed file only if it was sealed again, and then what it says is a
-    theorem.  Everything else is rejected, not confirmed or unusable, in one line."""
+    """The checker verifies a changed file, and the program loads it, only if it was sealed again,
+    and then what it says is a theorem.  Everything else is refused in one line."""
     data = edited(formats[which], edits)
     if seal:
         data = resealed(data)
     path = tmp_path_factory.getbasetemp() / ("changed-%d" % os.getpid())
     path.write_bytes(gzip.compress(data, 1) if zipped else data)
-    try:
-        check.verify(path)
-    except check.Failure as error:
-        one_line(error)
-    else:
-        assert seal or data == formats[which]
+    for read, failure in (check.verify, check.Failure), (LOAD[which], ConverseError):
+        try:
+            read(path)
+        except failure as error:
+            one_line(error)
+        else:
+            assert seal or data == formats[which]
 
 
 @MANY

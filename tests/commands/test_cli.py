@@ -315,21 +315,6 @@ def test_figure_over_something_else(run, sample, tmp_path):
     assert path.read_bytes() == sample.read_bytes()
 
 
-def test_bad_backups(run, sample, root, tmp_path):
-    good = tmp_path / "good"
-    assert run("-b", good, sample)[0] == 0
-    truncated, edited, longer = (tmp_path / name for name in ("truncated", "edited", "longer"))
-    truncated.write_bytes(good.read_bytes()[:-40])
-    longer.write_bytes(good.read_bytes() + b"\n")
-    edited.write_text(good.read_text().replace("depth: 30", "depth: 31"))
-    for path, word in ((truncated, "truncated"), (edited, "damaged"), (sample, "not a proof file"),
-                       (longer, "something follows the end"), (tmp_path, "is a directory"),
-                       (tmp_path / "missing", "cannot be read")):
-        status, out, err = run("-r", path)
-        assert status == 2 and out == "" and one_line(err)
-        assert str(path) in err and word in err
-
-
 @pytest.mark.parametrize("name", ["a.proof", "a.proof.gz", "a.svg", "a.ps"])
 def test_the_figure_destroys_no_proof(run, sample, tmp_path, name):
     assert run("-b", tmp_path / name, sample)[0] == 0

@@ -1,6 +1,5 @@
 """Sweeps: the same bytes whoever computes them and however often they were interrupted."""
 
-import concurrent.futures
 import importlib.util
 import io
 import math
@@ -72,19 +71,6 @@ def test_the_table_is_read_again(path):
         read(path)
 
 
-@pytest.mark.parametrize("kind, workers", [
-    (concurrent.futures.ThreadPoolExecutor, 1), (concurrent.futures.ThreadPoolExecutor, 2),
-    (concurrent.futures.ProcessPoolExecutor, 1), (concurrent.futures.ProcessPoolExecutor, 2)])
-def test_whoever_works_the_bytes_are_the_same(whole, path, kind, workers):
-    seen = []
-    with kind(workers) as executor:
-        table = sweep.sweep(orbits.trig, VECTORS, EPS, executor, path,
-                             lambda done, of: seen.append((done, of)))
-    assert path.read_bytes() == whole
-    assert same(table, sweep.sweep(orbits.trig, VECTORS, EPS))
-    assert seen == [(k, len(VECTORS)) for k in range(len(VECTORS) + 1)]
-
-
 # ---- interrupted
 
 def test_torn_anywhere(whole, path):
@@ -93,19 +79,6 @@ def test_torn_anywhere(whole, path):
         path.write_bytes(whole[:size])
         sweep.sweep(orbits.trig, VECTORS, EPS, file=path)
         assert path.read_bytes() == whole, size
-
-
-def test_what_is_finished_is_not_done_again(whole, path, monkeypatch):
-    lines = whole.splitlines(keepends=True)
-    path.write_bytes(b"".join(lines[:1 + 3 * len(EPS)]) + b"trig,1 2")
-    found, follow = [], orbits.follow
-    monkeypatch.setattr(orbits, "follow", lambda v, p, q, *rest, **options: (
-        found.append((p, q)), follow(v, p, q, *rest, **options))[1])
-    seen = []
-    with concurrent.futures.ThreadPoolExecutor(1) as executor:
-        sweep.sweep(orbits.trig, VECTORS, EPS, executor, path, lambda *done: seen.append(done))
-    assert found == [VECTORS[3], VECTORS[4]]
-    assert path.read_bytes() == whole and seen[0] == (3, 5)
 
 
 @pytest.mark.parametrize("potential, vectors, eps, words", [
@@ -121,16 +94,6 @@ def test_the_file_of_another_sweep_is_refused(whole, path, potential, vectors, e
         sweep.sweep(potential, vectors, eps, file=path)
     assert str(error.value).startswith(str(path)) and "\n" not in str(error.value)
     assert path.read_bytes() == whole
-
-
-@pytest.mark.parametrize("old, new", [(b"minimum,", b"minimum;"), (b",0.", b",zero."),
-                                      (b"e-0", b"\xff-0")])
-def test_a_damaged_sweep_is_refused(whole, path, old, new):
-    """Here the last line with such words."""
-    head, _, tail = whole.rpartition(old)
-    path.write_bytes(head + new + tail)
-    with pytest.raises(ConverseError, match="it is damaged"):
-        sweep.sweep(orbits.trig, VECTORS, EPS, file=path)
 
 
 MANY = """

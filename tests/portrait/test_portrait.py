@@ -9,7 +9,7 @@ import pytest
 from files import sealed
 
 from converse import ConverseError, MuldoonMap, StandardMap, SymplecticMap, check, tori
-from converse.check.portrait import check_places, patch_of_strip, read_portrait, read_region
+from converse.check.portrait import check_places, patch_of_strip, read_portrait, read_region, share
 from converse.model.problem import Problem
 from converse.prover import tree
 from converse.prover.portrait import Portrait, portray, pruned
@@ -182,6 +182,15 @@ def test_cuts_of_parameters_do_not_lessen_what_is_undecided(tree, strip, lost):
     patch = patch_of_strip(wave, Fraction(strip)) if strip else (wave,)
     claim = read_region("1 0.5 1 0 " + tree, patch, Fraction(strip), "a line", "")
     assert claim.counts["lost"] == Fraction(lost)
+
+
+def test_the_share_of_a_slice_of_t2_is_that_of_the_points_of_the_strip():
+    """s = arcsin(angle t2)/k: the outermost slices of t2 hold more of s than of t2."""
+    wave = check.claim.Wave((1, 0), Fraction(0), Fraction(1), ())
+    strip = Fraction(1, 2)
+    claim = read_region("1 0.5 0.5 0 3P3P3P3PU", patch_of_strip(wave, strip), strip, "a line", "")
+    true = math.asin(0.5) - math.asin(0.5 * 7 / 8)          # over the strip's width, 1
+    assert true <= share([claim], strip) < 1.2 * true
 
 
 def test_strips_lie_in_one_turn(strips):

@@ -1,5 +1,6 @@
 """Several starting points: what is proved over one is linked to others."""
 
+import itertools
 import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -8,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from files import sealed
 
 from converse import ConverseError, Problem, Proof, Settings, StandardMap, check, prove, read_input
 from converse.check.claim import Claim, Wave
@@ -22,7 +24,6 @@ from converse.prover.native import Counts
 from converse.prover.proof import Tree
 from converse.prover.resume import counted
 from converse.prover.workers import WorkersGone
-from converse.storage import files
 from converse.tori.find import find
 from converse.tori.rotation import read_rotation
 
@@ -134,6 +135,13 @@ def test_the_most_that_a_wave_adds(y, low, high):
         assert most >= max((-p * sines).max() for p in (float(low), float(high))) - 1e-15
 
 
+def test_a_bound_over_a_slice_is_the_largest_of_its_corners():
+    """Of values at the ends of two parameters, the first being the slowest."""
+    for ends in itertools.permutations(range(4)):
+        assert links._largest(ends, (0, 0), (0, 0)) == 3
+    assert links._largest([0, 4], (1,), (2,)) == 2
+
+
 def test_quotients_by_pi_are_rounded_outwards():
     """The bounds of pi are next to it, and 1 is a multiple of 1/COARSE."""
     below, above = links.PI
@@ -213,6 +221,7 @@ def test_letters_stand_as_high_up_as_may_be():
     whole = Target("b", still, ((Fraction(-1), Fraction(2)),) * 2)
     assert linked_tree(problem, text, steps, [whole]) == ("b", [0])
     left = Target("c", still, ((Fraction(-1), Fraction("0.51")), (Fraction(-1), Fraction(2))))
+    assert linked_tree(problem, "0UP", [0, 9, 5], [left]) == ("0cP", [0, 0, 5])
     assert linked_tree(problem, text, steps, [left]) == ("0c1UP", [0, 0, 0, 0, 7])
     tight = Target("d", still, ((Fraction(1, 4), Fraction(1)), (Fraction(0), Fraction(1))))
     assert linked_tree(problem, text, steps, [tight]) == (text, steps)      # nothing to spare
@@ -275,9 +284,7 @@ def test_wrong_parts(linked, tmp_path, change):
 def changed(proof, path, change):
     """The path of the proof's file, its text changed and its checksum renewed."""
     proof.save(path)
-    text = change(path.read_text())
-    body = text[:text.index("checksum: ")]
-    path.write_text(body + "checksum: sha256 %s\nend\n" % files.sha256(body))
+    path.write_text(sealed(change(path.read_text())))
     return path
 
 

@@ -466,3 +466,13 @@ def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
         view = grown.view(0)
         assert view.finished and view.text == text
         assert (view.counts.proved, view.counts.undecided) == (int(stubborn), 1)
+
+
+def test_one_prism_that_may_need_a_longer_orbit_is_remembered():
+    """Whatever the tasks that end after it say."""
+    tasks = shared.Part(cells=[1]), shared.Part(cells=[2])
+    search = shared.Shared.__new__(shared.Shared)
+    search.parts, search.needs_long = list(tasks), False
+    for task, needs_long in zip(tasks, (True, False)):
+        search._take(task, ([shared.Part("P")], needs_long))
+    assert search.needs_long and [part.text for part in search.parts] == ["P", "P"]

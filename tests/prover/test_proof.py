@@ -1,7 +1,6 @@
 """Proofs: what prove returns, the proof file, and continuing from it."""
 
 import gzip
-import hashlib
 import math
 import signal
 import threading
@@ -14,6 +13,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from conftest import around
+from files import sealed
 
 from converse import (ConverseError, Counts, FourierMap, Problem, Proof, Settings, StandardMap,
                       check, prove, read_input)
@@ -22,6 +22,7 @@ from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.problem import IDENTITY
 from converse.prover import native, run, shared
 from converse.prover.report import verdict
+from converse.prover.resume import continued
 from converse.prover.tree import leaves
 from converse.storage import files
 from converse.version import __version__
@@ -152,38 +153,6 @@ def test_file_says_what_it_is(tmp_path, made_up):
     assert all(len(line) < 82 for line in sound)
 
 
-@pytest.mark.parametrize("name", ["a.proof", "a.proof.gz"])
-@pytest.mark.slow
-def test_truncation_and_damage_are_noticed(tmp_path, made_up, name):
-    path = tmp_path / name
-    made_up("0P1SU", comments=("one",)).save(path)
-    data = path.read_bytes()
-    for length in range(len(data)):
-        path.write_bytes(data[:length])
-        with pytest.raises(ConverseError, match="a.proof.*, line [0-9]+: ") as caught:
-            Proof.load(path)
-        assert "\n" not in str(caught.value)
-    if name.endswith(".gz"):
-        return
-    for place in range(len(data)):
-        path.write_bytes(data[:place] + bytes([data[place] ^ 1]) + data[place + 1:])
-        with pytest.raises(ConverseError):
-            Proof.load(path)
-    path.write_bytes(data + b"\n")
-    with pytest.raises(ConverseError):
-        Proof.load(path)
-
-
-def test_foreign_files(tmp_path, root):
-    with pytest.raises(ConverseError, match="line 1: this is not a proof file"):
-        Proof.load(root / "inputs" / "trig274.in")
-    (tmp_path / "noise").write_bytes(bytes(range(256)))
-    (tmp_path / "noise.gz").write_bytes(gzip.compress(b"hello"))
-    for name in "noise", "noise.gz", "missing", ".":
-        with pytest.raises(ConverseError):
-            Proof.load(tmp_path / name)
-
-
 def test_save_keeps_the_older_file(tmp_path, made_up, monkeypatch):
     path = tmp_path / "a.proof"
     made_up("P").save(path)
@@ -264,6 +233,13 @@ def test_continue_as_printed(tmp_path, problem, interrupted):
     interrupted(problem, tmp_path / "backup", 9, as_printed=True)
     assert timeless(prove(resume=tmp_path / "backup")) \
         == timeless(prove(problem, as_printed=True))
+
+
+def test_hints_stay_with_their_prisms(made_up):
+    """A prism that was undecided is tried again without one, if it may be cut more often."""
+    half = made_up("0U?", stubborn=True, pending=(7,))
+    again = continued(half, "a.proof", {"depth": half.depth + 1})
+    assert (again.tree, again.trees[0].pending, again.counts.undecided) == ("0??", (0, 7), 0)
 
 
 @pytest.mark.parametrize("name, change, options", [
@@ -502,16 +478,12 @@ def test_a_proof_of_nothing_can_be_shown(problem):
 
 # ---- the format
 
-def resealed(text):
-    head = text[:text.index("checksum: ")]
-    return head + "checksum: sha256 %s\nend\n" % hashlib.sha256(head.encode("utf-8")).hexdigest()
-
 
 @pytest.mark.parametrize("other", [2, 3, 4, 5, 7])
 def test_other_formats_are_refused(made_up, tmp_path, other):
     path = tmp_path / "old.proof"
     made_up("P").save(path)
-    path.write_text(resealed(path.read_text("utf-8").replace("proof 6", "proof %d" % other)))
+    path.write_text(sealed(path.read_text("utf-8").replace("proof 6", "proof %d" % other)))
     with pytest.raises(ConverseError, match="of another format; this release reads format 6, so "
                        "continue it with the release that wrote it$") as caught:
         Proof.load(path)
@@ -590,7 +562,7 @@ def test_a_header_that_makes_no_sense(made_up, tmp_path, line, new):
     lines = path.read_text().split("\n")
     at = next(n for n, text in enumerate(lines) if text.startswith(line + ": "))
     lines[at:at + 1] = [new] if new else []
-    path.write_text(resealed("\n".join(lines)))
+    path.write_text(sealed("\n".join(lines)))
     with pytest.raises(ConverseError, match="a.proof, line [0-9]+: .*makes no sense") as caught:
         Proof.load(path)
     assert "\n" not in str(caught.value)

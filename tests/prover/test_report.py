@@ -129,6 +129,12 @@ def test_undecided(made_up, tree, stubborn, number, deepest, ended):
         assert ("--method loewner" in verdict(proof, "")) == (not as_printed)
 
 
+def test_the_deepest_of_the_undecided_prisms_is_told(made_up):
+    text = made_up("0U1UU", method="loewner", stubborn=True).report()
+    assert "3 prisms, the deepest cut 2 times" in text
+
+
+
 @pytest.mark.parametrize("tree, words", [
     ("0PU", "Undecided  1 prism, the deepest cut 1 time\n           the first of them: "),
     ("00U", "\nEnded      at the limit of doubles: "),
