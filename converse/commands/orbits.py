@@ -72,7 +72,8 @@ def _value(text):
 
 def read_potential(source, at=()):
     """One of those with a name, or that of an input file, with its parameters at these values."""
-    from converse import SymplecticMap, orbits
+    from converse import orbits
+    from converse.model.map import SymplecticMap
 
     if source in POTENTIALS:
         if at:
