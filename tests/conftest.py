@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 from collections import Counter
+from dataclasses import fields
 from fractions import Fraction
 from pathlib import Path
 
@@ -113,9 +114,8 @@ def made_up():
                                  ("0.00125", "0.00125", "0.0025", h0, h1), comments)
         counts = counts or Counts(cuts=tree.count("0") + tree.count("1"), proved=tree.count("P"),
                                   symmetric=tree.count("S"), undecided=tree.count("U"))
-        settings = Settings(**{"method": "thesis"} | {name: options.pop(name) for name in
-                               ("method", "depth", "digits", "stubborn", "as_printed")
-                               if name in options})
+        settings = Settings(**{"method": "thesis"} | {
+            each.name: options.pop(each.name) for each in fields(Settings) if each.name in options})
         names = "T", "Tr-", "Tr+", "B", "lambda-min", "lambda-max"
         facts = {"xstar": ("1.5", "1.5"), "seconds": 12.5,
                  "constants": dict.fromkeys(names, "1.25"), **options}

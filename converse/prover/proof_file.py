@@ -12,7 +12,7 @@ from ..storage.kept import damaged, read_sealed, sealed, unsealed
 from . import tree
 from .native import CONSTANTS, Counts
 from .proof import Proof, Tree
-from .settings import Settings
+from .settings import FILED, Settings
 
 FIRST_LINE = "converse proof 6"
 PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
@@ -72,8 +72,10 @@ def text_of(proof):
              "program: converse " + proof.version, "method: " + proof.method]
     lines += _problem_lines(problem)
     lines += ["xstar: " + " ".join(proof.xstar)] if proof.xstar else []
-    lines += ["depth: %d" % proof.depth, "digits: %d" % proof.digits,
-              "stubborn: " + _yes(proof.settings.stubborn), "at once: " + at_once]
+    for name in FILED:
+        value = getattr(proof.settings, name)
+        lines += ["%s: %s" % (name, _yes(value) if isinstance(value, bool) else value)]
+    lines += ["at once: " + at_once]
     lines += [] if proof.all_decided else ["seconds: %.2f" % proof.seconds]
     lines += ["hopeless: yes"] if proof.hopeless else []
     pending, before = (), 0
@@ -120,9 +122,10 @@ def _proof(fields, trees, sha256):
     program = PROGRAM.fullmatch(values["program"])
     if program is None:
         raise ValueError("of an unknown program")
-    settings = Settings(values["method"], int(values["depth"]), int(values["digits"]),
-                        values["stubborn"] == "yes",
-                        {kind: printed for printed, kind in CLAIMS.items()}[values["kind"]])
+    settings = Settings(values["method"], as_printed={
+        kind: printed for printed, kind in CLAIMS.items()}[values["kind"]], **{
+        name: value == "yes" if value in ("yes", "no") else int(value)
+        for name, value in ((name, values[name]) for name in FILED)})
     constants = {name: _number(values[name]) for name in CONSTANTS[settings.method]
                  if name in values}
     # A Problem may make parameters of numbers: how many there are is counted in the file.

@@ -149,3 +149,5 @@ class Settings:
 
 
 MAY_CHANGE = {each.name for each in fields(Settings) if "may_change" in each.metadata}
+# Those that a proof file has a line for; its claim says the others.
+FILED = [each.name for each in fields(Settings) if each.name not in ("method", "as_printed")]
