@@ -8,7 +8,7 @@ import sys
 import time
 from dataclasses import fields
 
-from ..prover.settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
+from ..prover.settings import AS_PRINTED, REGION, SETTINGS, THEOREM, UNDECIDED, Settings
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
@@ -137,7 +137,7 @@ def run(options):
         options.stdin = sys.stdin.fileno()
     check_figure(options, options.input, options.backup, options.restore, options.stdin,
                  prisms=True)
-    given = {each.name: getattr(options, each.name) for each in fields(Settings)}
+    given = {name: getattr(options, name) for name in SETTINGS}
     if options.backup is not None:
         files.check_writable(options.backup, regular=True)
         files.check_new(options.backup, options.restore)

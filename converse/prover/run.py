@@ -23,7 +23,7 @@ from .native import Counts, Task
 from .orbit_length import longest
 from .proof import Proof, Tree
 from .resume import continued, counted
-from .settings import LENGTH, MAY_CHANGE, Settings
+from .settings import LENGTH, MAY_CHANGE, SETTINGS, Settings
 from .shared import Shared
 from .starts import MAX_PROOF_LEAVES, has_width, plan
 from .workers import Deadline, WorkerPool, check_options, count_workers
@@ -99,6 +99,9 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
         The backup cannot be written now, and will be tried again.  NotSaved, one of these: it could
         not be written in the end.
     """
+    if unknown := settings.keys() - SETTINGS:
+        raise TypeError("prove() has no argument %s; the settings are %s"
+                        % (min(unknown), ", ".join(SETTINGS)))
     given = {name: value for name, value in settings.items() if value is not None}
     check_options(jobs, executor)
     deadline = Deadline(time_limit, cpu_limit)

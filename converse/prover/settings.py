@@ -148,6 +148,7 @@ class Settings:
         return replace(problem, axes=(1, 0, 0, 1), alone="no")
 
 
+SETTINGS = [each.name for each in fields(Settings)]
 MAY_CHANGE = {each.name for each in fields(Settings) if "may_change" in each.metadata}
 # Those that a proof file has a line for; its claim says the others.
-FILED = [each.name for each in fields(Settings) if each.name not in ("method", "as_printed")]
+FILED = [name for name in SETTINGS if name not in ("method", "as_printed")]

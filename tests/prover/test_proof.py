@@ -17,12 +17,14 @@ from files import sealed
 
 from converse import (ConverseError, Counts, FourierMap, Problem, Proof, Settings, StandardMap,
                       check, prove, read_input)
+from converse.commands.prove import parser
 from converse.draw import plot
 from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.problem import IDENTITY
 from converse.prover import native, run, shared
 from converse.prover.report import verdict
 from converse.prover.resume import continued
+from converse.prover.settings import FILED, MAY_CHANGE, SETTINGS
 from converse.prover.tree import leaves
 from converse.storage import files
 from converse.version import __version__
@@ -690,3 +692,16 @@ def test_a_range_over_orders_of_magnitude_takes_few_prisms(tmp_path):
     proof = prove(FourierMap({(1, "+cos"): {"K": 1}, (3, "+cos"): "0.05"}, K=("0.38", "1e9")))
     assert proof.no_tori and proof.counts.proved < 6000
     assert "in doubles" in proof.verify().text
+
+
+def test_an_argument_that_prove_does_not_have_is_named():
+    with pytest.raises(TypeError, match=r"prove\(\) has no argument deepness; the settings are m"):
+        prove(LINE, deepness=9)
+
+
+def test_a_setting_is_one_row():
+    """Its flags and its keyword, and what a file and a continued run take, follow from the row."""
+    parsed = parser().parse_args(["-d9", "-p20", "-s", "--as-printed", "--method", "thesis"])
+    settings = Settings(**{name: getattr(parsed, name) for name in SETTINGS})
+    assert settings == Settings("thesis", 9, 20, True, True)
+    assert {*FILED, "method", "as_printed"} == set(SETTINGS) and {"depth", "stubborn"} == MAY_CHANGE
