@@ -18,7 +18,7 @@ let interrupted = 128                           (* and the number of the signal 
 let max_bytes = 1 lsl 28                        (* of a proof file, uncompressed *)
 let max_line = 1 lsl 24                         (* of the header *)
 let max_cuts = 1000                             (* of a leaf *)
-let max_characters = 1000                       (* of a number *)
+let max_characters = 3000                       (* of a number *)
 
 exception Failed of int * string                (* nothing was verified; why *)
 exception Interrupted of int
@@ -426,9 +426,8 @@ let magic = "converse proof "
 
 let read path =
   let data = load path in
-  if String.starts_with ~prefix:"{" data then
-    refuse "is not a proof file; converse-check verifies diagrams";
-  if not (String.starts_with ~prefix:magic data) then refuse "is not a proof file";
+  if not (String.starts_with ~prefix:magic data) then
+    refuse "is not a proof file; converse-check verifies all other files";
   let start = String.length magic in
   let first = match String.index_from_opt data start '\n' with
     | Some stop when stop - start <= 9 -> String.sub data start (stop - start)

@@ -63,6 +63,7 @@ class Claim:
     parts: tuple = ()                   # of a proof file: a, b, ..., each a Claim
     shifts: tuple = ()                  # of a part: what each parameter adds to v0 and v1, or none
     names: tuple = ()                   # of each parameter: name, value at t = -1 and at 1; or none
+    header: object = None               # of a proof file: its fields; nothing rests on the others
 
     @property
     def parameters(self):

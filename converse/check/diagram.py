@@ -13,19 +13,17 @@ from fractions import Fraction
 
 from .arith import SINE_ERROR, fixed_of
 from .claim import RATIO, Claim, number, present
+from .container import Format, read_container
 from .cover import symmetries_used
 from .failures import NotConfirmed, Rejected, named
 from .limits import MAX_K
-from .proof_file import header_fields, parse_waves, read_proof, sealed
-from .torus_file import TORUS_MAGIC, integers, rationals, read_torus
+from .proof_file import PROOF, parse_waves
+from .torus_file import TORUS, TorusClaim, integers, rationals
 from .tree import check_tree, coefficients
 from .words import GRAPH, exact_text, map_lines
 
-DIAGRAM_LINE = b"converse diagram 1"
 MAX_MEMBERS = 1 << 14
-DIAGRAM_FIELDS = {"wave", "parameter", "program", "points", "seconds"}
 SIDES = "above", "below"
-DIAGRAM_OPTIONAL = {*SIDES, "seen", "search", "comment"}
 MEMBER_END = re.compile(b"\nchecksum: sha256 [0-9a-f]{64}\nend\n")
 PARAMETER = re.compile(r"[^\W\d]\w{0,30}(\[[0-9]{1,3}\])?")      # of a parameter
 SIDE_BITS = 256                              # of the sines of step (C30)
@@ -133,13 +131,12 @@ class Family:
             It cannot be read, is not of the family, is not finished, or speaks of a part of the
             torus only.
         """
-        if text.startswith(TORUS_MAGIC):
-            claim = read_torus(text)
+        claim = read_container(text, PROOF, TORUS)
+        if isinstance(claim, TorusClaim):
             box, _ = self.values(claim.waves)
             if claim.dimension != self.angles:
                 raise Rejected("the torus has another number of angles than the family")
             return Member(claim, box, False, text)
-        claim = read_proof(text)
         check_tree(claim)
         if symmetries_used(claim) is None:
             raise Rejected("it is of a part of the torus only")
@@ -248,23 +245,9 @@ class Diagram:
                                                    union([box for box, in boxes])]
 
 
-def read_diagram(data):
-    """The diagram, if it is whole.
-
-    Parameters
-    ----------
-    data
-        The bytes of the file, uncompressed.
-
-    Raises
-    ------
-    Rejected, NotConfirmed, Unusable
-        As of read().
-    """
-    head, body, sha256 = sealed(data, DIAGRAM_LINE, "diagram", b"members:\n", "are no members")
-    header = header_fields(bytes(head), DIAGRAM_FIELDS | DIAGRAM_OPTIONAL)
-    if DIAGRAM_FIELDS - header.keys():
-        raise Rejected("the header lacks %s" % ", ".join(sorted(DIAGRAM_FIELDS - header.keys())))
+def read_diagram(file):
+    """The diagram of a container."""
+    header = file.header
     names, ranges = zip(*map(parse_parameter, header["parameter"]))
     family = Family(parse_waves(header["wave"], RATIO), names)
     if not 1 <= len(names) <= 2 or len(set(names)) != len(names) \
@@ -273,7 +256,7 @@ def read_diagram(data):
     if solution(*[[[wave.parts[m] for wave in family.waves] for m in range(len(names))],
                   [0] * len(family.waves)]) is None:
         raise Rejected("the parameters do not move the amplitudes independently")
-    members, start, body = [], 0, bytes(body)
+    members, start, body = [], 0, bytes(file.body)
     for found in MEMBER_END.finditer(body):
         if len(members) == MAX_MEMBERS:
             raise NotConfirmed("there are more members than the checker's limit, %d" % MAX_MEMBERS)
@@ -284,9 +267,14 @@ def read_diagram(data):
         raise Rejected("the last member is not whole")
     diagram = Diagram(family, ranges, tuple(members), tuple([
         parse_side(side, header[side], family) for side in SIDES if side in header]), header,
-        sha256)
+        file.sha256)
     check_members(diagram)
     return diagram
+
+
+DIAGRAM = Format("diagram", "1", "diagram", "members",
+                 {"wave", "parameter", "program", "points", "seconds"},
+                 {*SIDES, "seen", "search", "comment"}, read_diagram)
 
 
 def parse_parameter(line):

@@ -6,17 +6,16 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from .arith import fixed_of
-from .claim import IDENTITY, NUMBER, RATIO, Claim, Wave, number, present
+from .claim import IDENTITY, RATIO, Claim, Wave, number, present
+from .container import Format
 from .cover import CENTRE_BITS, reversal_centre
 from .failures import NotConfirmed, Rejected, named
-from .proof_file import header_fields, parse_waves, sealed
+from .proof_file import parse_part, parse_waves
 from .tree import leaves
 from .words import GRAPH, decimal_text, map_lines, ordinary_names, range_text
 
-FIRST_LINE = b"converse portrait 1"
 MAX_COLUMNS = 1 << 16                   # of a portrait
 MAX_STRIP = 0.5                         # of k times half the width of a column, in radians
-PORTRAIT_FIELDS = {"wave", "strip", "even about", "undecided", "program", "depth", "columns"}
 STRIP_AXIS = 3                          # of cells: that of t2, along which a strip is cut
 PLACES = 6                              # of the share that the header says
 
@@ -30,6 +29,7 @@ class Portrait:
     even: object                        # V is even about this point, in units of pi; or None
     claims: tuple                       # of the regions of all columns, in their order; the
                                         # others are parts of the first, as their patch is one
+    header: dict                        # its fields; nothing rests on the others
     sha256: str                         # of the file, uncompressed
 
     @property
@@ -54,7 +54,7 @@ class Portrait:
         if self.strip:
             total = 1 - 2 * self.strip * sum([1 - x for x in shares]) / self.length[1]
         else:
-            total = sum(shares) / len(shares)
+            total = sum(shares, Fraction(0)) / len(shares) if shares else Fraction(1)
         return Fraction(math.ceil(total * 10 ** PLACES), 10 ** PLACES)
 
 
@@ -89,12 +89,9 @@ def share(column, strip):
     return min(total * (1 + angle * angle), Fraction(1))
 
 
-def read_portrait(data):
-    """The portrait; Rejected, unless it is whole and all its regions are valid."""
-    head, body, sha256 = sealed(data, FIRST_LINE, "portrait", b"columns:\n", "are no columns")
-    header = header_fields(bytes(head), PORTRAIT_FIELDS | {"comment"})
-    if PORTRAIT_FIELDS - header.keys():
-        raise Rejected("the header lacks %s" % ", ".join(sorted(PORTRAIT_FIELDS - header.keys())))
+def read_portrait(file):
+    """The portrait of a container; Rejected, unless all its regions are valid."""
+    header = file.header
     waves, strip = present(parse_waves(header["wave"])), number(header["strip"], "the strip")
     if any(wave.k[1] for wave in waves) or not waves:
         raise Rejected("the waves are not those of a map of one angle")
@@ -112,13 +109,17 @@ def read_portrait(data):
         even = number(header["even about"], "the header's even about", RATIO)
         if any((wave.k[0] * even + wave.phase - Fraction(1, 2)) % 1 for wave in waves):
             raise Rejected("V is not even about the point that the header names")
-    claims = [read_region(line, patch, strip, "column line %d" % at, sha256) for at, line in
-              enumerate(bytes(body).decode("latin-1").split("\n")[:-1], 1)]
-    if not claims:
-        raise Rejected("there are no columns")
-    claims[0] = replace(claims[0], parts=tuple(claims[1:]))
-    found = Portrait(waves, strip, even, tuple(claims), sha256)
-    check_places(found)
+    zero, one = Fraction(0), Fraction(1)
+    over = Claim(patch, (one, one), (one, one), IDENTITY, None, (zero, zero), {}, "no", "",
+                 file.sha256)
+    first, *texts = ("\n" + bytes(file.body).decode("latin-1")).split("\npart: ")
+    if first.strip("\n"):
+        raise Rejected("the line 'parts:' is not followed by a part")
+    claims = [read_region(str(n), text, over, strip) for n, text in enumerate(texts, 1)]
+    claims[:1] = [replace(claim, parts=tuple(claims[1:])) for claim in claims[:1]]
+    found = Portrait(waves, strip, even, tuple(claims), header, file.sha256)
+    if claims:
+        check_places(found)
     for column in found.columns:
         with named(column[0].where):
             check_column(column, strip)
@@ -126,26 +127,19 @@ def read_portrait(data):
     if said != found.undecided:
         raise Rejected("the header's undecided is %s, that of its columns %s"
                        % (decimal_text(said), decimal_text(found.undecided)))
-    if not any("P" in claim.tree for claim in claims):
-        raise Rejected("no prism of the portrait is proved: it claims no theorem")
     return found
 
 
-def read_region(line, patch, strip, name, sha256):
-    """The claim of a line: x*, the centre and half-width of v0, the shift by t2, and a tree."""
-    words = line.split(" ")
-    if len(words) != 5 or not all(map(NUMBER.fullmatch, words[:4])):
-        raise Rejected(name + " is not four decimal numbers and a tree")
-    x, centre, half, shift = [number(word, name) for word in words[:4]]
-    if half < 0 or shift and not strip:
-        raise Rejected("%s: %s" % (name, "the half-width is negative" if half < 0 else
-                                   "there are no strips, and the region moves"))
-    zero, one, count = Fraction(0), Fraction(1), len(patch[0].parts)
-    shifts = tuple([(shift if m == 1 else zero, zero) for m in range(count)]) if shift else ()
-    claim = Claim(patch, (centre, one), (half, one), IDENTITY, None, (x, zero), {}, "no", words[4],
-                  sha256, where=name, shifts=shifts)
+def read_region(name, text, patch, strip):
+    """The claim of a part of this number, with what follows `part: ` in the file."""
+    claim = parse_part(name, text, patch)
+    count = len(claim.waves[0].parts)
+    if claim.xstar[1] or (claim.centre[1], claim.half[1]) != (1, 1) or any(
+            s1 or s0 and (m != 1 or not strip) for m, (s0, s1) in enumerate(claim.shifts)):
+        raise Rejected("%s is not over one angle, or its region moves, but not with t2 of a strip"
+                       % claim.where)
     lost, deepest, most_cuts = collections.Counter(), 0, 0
-    with named(name):
+    with named(claim.where):
         for at, (_, cuts) in leaves(claim.tree, kinds="PU"):
             deepest = max(deepest, sum(cuts))
             if claim.tree[at] == "P":
@@ -159,6 +153,11 @@ def read_region(line, patch, strip, name, sha256):
                         undecided=undecided, most_cuts=most_cuts, depth=deepest,
                         lost=sum([Fraction(n, 1 << cuts) for cuts, n in lost.items()]))
     return claim
+
+
+PORTRAIT = Format("portrait", "2", "portrait", "parts",
+                  {"wave", "strip", "even about", "undecided", "program", "depth", "columns"},
+                  {"comment"}, read_portrait)
 
 
 def check_places(portrait):

@@ -1,93 +1,21 @@
 """Reading a proof file: nothing in it is believed but what the claim is."""
 
-import hashlib
-import io
 import re
 from dataclasses import replace
 from fractions import Fraction
 
 from .claim import (ANGLES, LETTERS, NAME, NUMBER, RATIO, RESERVED, Claim, Wave, check_alone,
                     check_frame, number)
-from .failures import NotConfirmed, Rejected, Unusable
-from .limits import MAX_K, MAX_LINE, MAX_WAVES
+from .container import Format
+from .failures import Rejected
+from .limits import MAX_K, MAX_WAVES
 
 COUNTS = ("depth", "cuts", "proved", "symmetric", "linked", "undecided", "most_cuts")
 IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries", "reasons",
-           "HermSuccess", "LLSuccess", "ll_used", "max_steps", "max_NTsteps", "B", "pending")
-OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "hopeless", "parameter",
-            "comment"}
-FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame", "alone",
-          "odd about"}
-REPEATED = {"wave", "parameter", "comment", "seen", "search"}
-MAGIC, VERSION = b"converse proof ", b"6"       # the first line
-
-
-def read_proof(data):
-    """The claim of a proof file, if it is whole and has the checksum that it says."""
-    if not data.startswith(MAGIC):
-        raise Unusable("is a diagram, a portrait or a certificate of existence, which "
-                       "converse-check verifies")
-    head, tree, sha256 = sealed(data, MAGIC + VERSION, "proof file", b"tree:\n", "is no tree")
-    return parse(bytes(head), bytes(tree).decode("latin-1"), sha256)
-
-
-def sealed(data, first_line, kind, marker, lack):
-    """What stands in a file before and after the line `marker`, which begins with this first line
-    and has the checksum that it says, as memoryviews; and the SHA-256 of the whole.  kind, lack:
-    what such a file is called, and that there is nothing after the marker, in words."""
-    start = first_line.rindex(b" ") + 1
-    first = data[start:start + 9].partition(b"\n")[0]
-    if first.endswith(b"\r"):
-        raise Rejected("its lines end in CR LF: it was altered on its way; ask for the original")
-    if first != first_line[start:]:
-        raise Unusable("is a %s of another version; this checker knows version %s"
-                       % (kind, first_line[start:].decode()))
-    checksum = b"checksum: sha256 "
-    end = data.rfind(b"\n" + checksum) + 1
-    end_line = data[end + len(checksum):]
-    if not end or not re.fullmatch(b"[0-9a-f]{64}\nend\n", end_line):
-        raise Rejected("the file does not end with its checksum; it is truncated or altered")
-    view = memoryview(data)
-    if end_line[:64] != hashlib.sha256(view[:end]).hexdigest().encode():
-        raise Rejected("wrong checksum: the file was changed or damaged")
-    at = data.find(b"\n" + marker, 0, end) + 1
-    if not at:
-        raise Rejected("there " + lack)
-    return view[:at], view[at + len(marker):end], hashlib.sha256(view).hexdigest()
-
-
-def header_fields(head, known):
-    """The fields, each of them given once, and none of unknown meaning.
-
-    Nothing of it is repeated in a message but the names of fields that are known.
-    """
-    header, file = {"wave": []}, io.BytesIO(head)
-    file.readline()                     # which sealed has seen to
-    for at, line in enumerate(iter(lambda: file.readline(MAX_LINE), b""), 2):
-        if len(line) == MAX_LINE:
-            raise NotConfirmed("line %d is longer than the checker's limit, %d bytes"
-                               % (at, MAX_LINE - 1))
-        name, colon, value = line.decode("utf-8", "replace").rstrip("\n").partition(": ")
-        if not colon or name not in known:
-            raise Rejected("line %d, in the header, is of unknown meaning" % at)
-        if name in header and name not in REPEATED:
-            raise Rejected("the header gives %s twice" % name)
-        if name in REPEATED:
-            header.setdefault(name, []).append(value)
-        else:
-            header[name] = value
-    return header
-
-
-def parse_header(head):
-    header = header_fields(head, FIELDS | OPTIONAL)
-    if "xstar" not in header:
-        raise Rejected("the search had not begun when it was left; converse -r FILE begins it")
-    if FIELDS - header.keys():
-        raise Rejected("the header lacks %s" % ", ".join(sorted(FIELDS - header.keys())))
-    if header["kind"] != "sound":
-        raise Rejected("the file's kind is not 'sound': it is not meant as a proof")
-    return header
+           "HermSuccess", "LLSuccess", "ll_used", "max_steps", "max_NTsteps", "pending")
+OPTIONAL = {"xstar", "B", "T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "hopeless",
+            "parameter", "comment"}
+FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "at once", "wave", "frame", "alone", "odd about"}
 
 
 def pair(value, name, form=NUMBER, count=0):
@@ -105,11 +33,13 @@ def place(xstar, v0, v1, name, count=0):
     if wrong := [angle for angle, (_, half, *_) in zip(ANGLES, ranges) if half < 0]:
         raise Rejected("%s%s: the half-width is negative" % (name, wrong[0]))
     centre, half, *shifts = zip(*[(x + (Fraction(0),) * count)[:2 + count] for x in ranges])
-    return pair(xstar, name + "xstar"), centre, half, tuple(shifts) * any(map(any, shifts))
+    shifts = tuple(shifts) * any(map(any, shifts))
+    return xstar and pair(xstar, name + "xstar"), centre, half, shifts
 
 
-def parse_part(text, letter, claim):
-    """A part of a claim, from what follows `part: `: four lines and a tree."""
+def parse_part(letter, text, claim):
+    """A part of a claim, of this letter or number, from what follows `part: `: four lines and a
+    tree."""
     name, found = "part " + letter, re.match(
         letter + "\nxstar: (.*)\nv0: (.*)\nv1: (.*)\ntree:\n", text)
     if not found:
@@ -120,17 +50,17 @@ def parse_part(text, letter, claim):
                    tree=text[found.end():].replace("\n", ""), counts={}, at_once="no")
 
 
-def parse(head, tree, sha256):
-    """The claim of a header, and of what follows it: a tree, and perhaps parts."""
-    header = parse_header(head)
-    tree, *parts = ("\n" + tree).split("\npart: ")
+def read_proof(file):
+    """The claim of a container: of its header, and of a tree and perhaps parts, its body."""
+    header = file.header
+    tree, *parts = ("\n" + bytes(file.body).decode("latin-1")).split("\npart: ")
 
     def one_of(name, *values):
         if header[name] not in values:
             raise Rejected("the header's %s is neither %s" % (name, " nor ".join(values)))
         return header[name]
 
-    xstar, centre, half, _ = place(*[header[x] for x in ("xstar", *ANGLES)], "the header's ")
+    xstar, centre, half, _ = place(*map(header.get, ("xstar", *ANGLES)), "the header's ")
     for name in COUNTS:
         if not re.fullmatch("[0-9]{1,18}", header[name], re.ASCII):
             raise Rejected("the header's %s is not a count" % name)
@@ -143,14 +73,14 @@ def parse(head, tree, sha256):
         pair(header["odd about"], "the header's odd about", RATIO)
     claim = Claim(waves, centre, half, frame, alone, xstar,
                   {name: int(header[name]) for name in COUNTS}, at_once, tree.replace("\n", ""),
-                  sha256, names=parameter_names(header.get("parameter", ()), waves))
+                  file.sha256, names=parameter_names(header.get("parameter", ()), waves),
+                  header=header)
     check_odd(claim, odd)
-    if len(parts) > len(LETTERS):
-        raise Rejected("there are more parts than letters")
     if parts and alone is not None:
         raise Rejected("a coordinate is alone, and there are parts: links are of whole graphs")
-    return replace(claim, parts=tuple([parse_part(text, letter, claim)
-                                       for text, letter in zip(parts, LETTERS)]))
+    if len(parts) > len(LETTERS):
+        raise Rejected("there are more parts than letters")
+    return replace(claim, parts=tuple([parse_part(*each, claim) for each in zip(LETTERS, parts)]))
 
 
 def parameter_names(lines, waves):
@@ -205,3 +135,6 @@ def parse_waves(lines, form=NUMBER):
         if len(parts) != len(waves[0].parts):
             raise Rejected(name + " has not as many parts as the first")
     return tuple(waves)
+
+
+PROOF = Format("proof", "6", "proof file", "tree", FIELDS, OPTIONAL, read_proof)

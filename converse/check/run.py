@@ -8,24 +8,24 @@ import zlib
 from dataclasses import dataclass
 
 from .claim import Claim
+from .container import read_container
 from .criterion import check_at_once
-from .diagram import DIAGRAM_LINE, Diagram, drawn, proofs_of, read_diagram
-from .failures import NotConfirmed, Unusable, named
+from .diagram import DIAGRAM, Diagram, drawn, proofs_of
+from .failures import NotConfirmed, Rejected, Unusable, named
 from .limits import MAX_BYTES, PART, SPOT_CHECK, VERIFIED
 from .links import check_links
 from .lockstep import make_lockstep
-from .portrait import FIRST_LINE as PORTRAIT
-from .portrait import Portrait, portrayed, read_portrait
+from .portrait import PORTRAIT, Portrait, portrayed
 from .progress import Bar, reason
-from .proof_file import MAGIC, read_proof
-from .torus_file import TORUS_MAGIC, TorusClaim, read_torus
+from .proof_file import PROOF
+from .torus_file import TORUS, TorusClaim
 from .tree import check_mirror_images, check_tree
 from .words import claimed, not_excluded, report
 from .workers import Problems, check_all
 
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
 FAST_CHUNK = 1 << 10, 1 << 14           # least (a batch of Lockstep) and most of the fast path
-DIAGRAM_MAGIC, PORTRAIT_MAGIC = [line[:len(MAGIC)] for line in (DIAGRAM_LINE, PORTRAIT)]
+FIRST_WORD = b"converse "               # of a file
 VERDICTS = {VERIFIED: "verified", PART: "verified in part", SPOT_CHECK: "spot check"}
 
 
@@ -73,8 +73,8 @@ def load(path):
         with open(path, "rb") as file:
             packed = file.peek(2)[:2] == b"\x1f\x8b"
             stream = gzip.GzipFile(fileobj=file) if packed else file
-            data = bytearray(stream.read(len(MAGIC)))
-            if data not in (MAGIC, TORUS_MAGIC, PORTRAIT_MAGIC, DIAGRAM_MAGIC):
+            data = bytearray(stream.read(len(FIRST_WORD)))
+            if data != FIRST_WORD and data[:1] != b"{":         # a map of 5.2.0
                 raise Unusable("is not a proof file, a diagram, a portrait or a certificate")
             while (more := stream.read(1 << 20)) and len(data) <= MAX_BYTES:
                 data += more
@@ -87,7 +87,7 @@ def load(path):
     return data
 
 
-def read(path):
+def read(path, *kinds):
     """Reads a proof file, a diagram, a portrait or a certificate of existence.  Nothing is
     verified.
 
@@ -95,6 +95,8 @@ def read(path):
     ----------
     path
         As of load().
+    kinds
+        Of these "proof", "diagram", "portrait" and "torus", the files that suit; by default all.
 
     Returns
     -------
@@ -106,14 +108,13 @@ def read(path):
     Rejected, NotConfirmed, Unusable
         The file is wrong, exceeds the checker's limits, or cannot be used.
     """
-    data = load(path)
-    if data.startswith(TORUS_MAGIC):
-        return read_torus(data)
-    if data.startswith(PORTRAIT_MAGIC):
-        return read_portrait(data)
-    if data.startswith(DIAGRAM_MAGIC):
-        return read_diagram(data)
-    return read_proof(data)
+    return content(load(path), *kinds)
+
+
+def content(data, *kinds):
+    """As read(), of the bytes of a file, uncompressed."""
+    return read_container(data, *[form for form in (PROOF, DIAGRAM, PORTRAIT, TORUS)
+                                  if not kinds or form.kind in kinds])
 
 
 def verify(path, jobs=1, sample=None, bar=False, exact=False):
@@ -195,6 +196,8 @@ def problems_of(file):
     """The Problems of a proof file, a diagram or a portrait, and the function that words its
     theorem.  Everything except the leaves, and the tori of a diagram, has been checked."""
     if isinstance(file, Portrait):
+        if not any("P" in claim.tree for claim in file.claims):
+            raise Rejected("no prism of the portrait is proved: it claims no theorem")
         return Problems(file.claims[:1]), portrayed
     if isinstance(file, Claim):
         check_tree(file)

@@ -2,26 +2,24 @@
 describes it."""
 
 import io
-import itertools
 import re
 from dataclasses import dataclass
 from fractions import Fraction
 
 from .claim import RATIO, number, present
+from .container import Format
 from .failures import NotConfirmed, Rejected
-from .limits import MAX_BITS, MAX_K, MAX_LINE, MAX_PIECES
-from .proof_file import parse_waves, sealed
+from .limits import MAX_BITS, MAX_K, MAX_PIECES
+from .proof_file import parse_waves
 
 MAX_MODES = 1 << 21                     # of a torus
 MAX_MODE = 1 << 21                      # |k0| and |k1| of a mode
 MAX_ALPHA = 1000                        # of the weights of modes
-TORUS_MAGIC = b"converse torus "        # The first line begins with this; the version follows.
-TORUS_FIELDS = ("program", "dimension", "wave", "polynomial", "root", "rotation", "frame", "alpha",
-                "rho", "pieces")
+TORUS_FIELDS = {"program", "dimension", "wave", "polynomial", "root", "rotation", "frame", "alpha",
+                "rho", "pieces"}
 INTEGER = re.compile("0|-?[1-9][0-9]*", re.ASCII)
 COUNT = re.compile("0|[1-9][0-9]{0,8}", re.ASCII)
 HEXADECIMAL = re.compile("0|-?[1-9a-f][0-9a-f]*", re.ASCII)
-NAMES = re.compile("comment|hint-[a-z0-9-]{1,40}", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -56,8 +54,6 @@ class TorusClaim:
         Of each piece the width of the strip.
     pieces
         The tori, each a Piece.
-    hints
-        Lines of the header by name, on which nothing rests.
     sha256
         The SHA-256 of the file, uncompressed.
     """
@@ -71,52 +67,13 @@ class TorusClaim:
     alpha: tuple
     rho: tuple
     pieces: tuple
-    hints: dict
     sha256: str
-
-
-def read_torus(data):
-    """The claim of a certificate, if it is whole and has the checksum that it says.
-
-    Parameters
-    ----------
-    data
-        The bytes of the file, uncompressed.
-
-    Raises
-    ------
-    Rejected, NotConfirmed, Unusable
-        As of read().
-    """
-    head, body, sha256 = sealed(data, TORUS_MAGIC + b"1", "certificate", b"tori:\n", "are no tori")
-    return parse_torus(torus_header(head), lines_of(body), bytes(head).count(b"\n") + 2, sha256)
 
 
 def lines_of(data):
     """The lines, one after the other: a list of all would take many times their space."""
     for line in io.BytesIO(data):
         yield line.decode("utf-8", "replace").rstrip("\n")
-
-
-def torus_header(head):
-    """The fields, each of them given once but waves and components of the rotation."""
-    header = {"wave": [], "rotation": []}
-    for at, line in itertools.islice(enumerate(lines_of(head), 1), 1, None):
-        if len(line) > MAX_LINE:
-            raise NotConfirmed("line %d is longer than the checker's limit" % at)
-        name, colon, value = line.partition(": ")
-        if not colon or name not in TORUS_FIELDS and not NAMES.fullmatch(name):
-            raise Rejected("line %d, in the header, is of unknown meaning" % at)
-        if name in ("wave", "rotation"):
-            header[name].append(value)
-        elif name in header and name != "comment":
-            raise Rejected("the header gives %s twice" % name)
-        else:
-            header[name] = value
-    missing = [name for name in TORUS_FIELDS if name not in header]
-    if missing:
-        raise Rejected("the header lacks %s" % ", ".join(missing))
-    return header
 
 
 def rationals(text, count, name):
@@ -136,8 +93,9 @@ def integers(text, count, name, most):
     return tuple(map(int, words))
 
 
-def parse_torus(header, body, line, sha256):
-    """The claim of a header and of the lines after it, the first of which has this number."""
+def read_torus(file):
+    """The claim of a container."""
+    header = file.header
     if header["dimension"] not in ("1", "2"):
         raise Rejected("the header's dimension is neither 1 nor 2")
     n = int(header["dimension"])
@@ -165,7 +123,7 @@ def parse_torus(header, body, line, sha256):
     rho = rationals(header["rho"], int(header["pieces"]), "the header's rho")
     if min(rho) <= 0:
         raise Rejected("the header's rho is not positive")
-    lines, pieces = iter(enumerate(body, line)), []
+    lines, pieces = enumerate(lines_of(file.body), file.line), []
     for _ in range(int(header["pieces"])):
         pieces.append(read_piece(lines, n, parameter, pieces[-1].high if pieces else None))
     for at, _ in lines:
@@ -173,8 +131,7 @@ def parse_torus(header, body, line, sha256):
     if parameter and pieces[-1].high != 1 or not parameter and len(pieces) > 1:
         raise Rejected("the pieces do not tile the range of the parameter")
     return TorusClaim(n, waves, polynomial, rationals(header["root"], 2, "the header's root"),
-                      rotation, frame, alpha, rho, tuple(pieces),
-                      {name: header[name] for name in header if name.startswith("hint-")}, sha256)
+                      rotation, frame, alpha, rho, tuple(pieces), file.sha256)
 
 
 def parse_norm(header, n):
@@ -233,3 +190,6 @@ def read_piece(lines, n, parameter, before):
     zero = ((0, 0),) * n
     return Piece(low, high, bits, degree, {
         k: tuple([entry.get(j, zero) for j in range(degree + 1)]) for k, entry in modes.items()})
+
+
+TORUS = Format("torus", "1", "certificate", "tori", TORUS_FIELDS, {"comment"}, read_torus)

@@ -84,9 +84,13 @@ def check_tree(claim):
     Raises
     ------
     Rejected
-        A tree is not whole or not decided, the header's counts are not the trees' counts, or no
-        leaf is linked to a part.
+        The file is not meant as a proof, a tree is not whole or not decided, the header's counts
+        are not the trees' counts, or no leaf is linked to a part.
     """
+    if claim.header["kind"] != "sound":
+        raise Rejected("the file's kind is not 'sound': it is not meant as a proof")
+    if not {"xstar", "B"} <= claim.header.keys():
+        raise Rejected("the search had not begun when it was left; converse -r FILE begins it")
     found = []
     for part, letters in trees(claim):
         with named(part.where):

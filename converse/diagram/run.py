@@ -7,11 +7,11 @@ from typing import Callable, Optional
 
 from ..model.exact import Number, exact
 from ..model.map import SymplecticMap
+from ..prover.resume import check_release
 from ..prover.workers import Deadline, Filling, WorkerPool, check_options
 from ..storage.backup import Backup
 from ..storage.files import ConverseError, Path
 from ..storage.signals import interruptible
-from ..version import __version__
 from . import cells, line
 from .sides import sides_of
 from .value import Diagram
@@ -90,6 +90,4 @@ def _check_resumed(diagram, asked, name):
     if asked is not None and (asked.family, asked.ranges) != (diagram.family, diagram.ranges):
         raise ConverseError("%s: is of another family or range, %s; name its own input, or leave "
                             "the input out" % (name, diagram.family))
-    if diagram.version != __version__:
-        raise ConverseError("%s: is of converse %s; continue it with that release, or start anew"
-                            % (name, diagram.version))
+    check_release(diagram, name)

@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Tuple, 
 
 from .. import check
 from ..check.claim import Wave
-from ..check.diagram import DIAGRAM_LINE
 from ..model.exact import Ends, exact, is_decimal
 from ..model.map import SymplecticMap
-from ..storage import files
 from ..storage.files import ConverseError, Path
-from ..storage.kept import Kept, sealed
+from ..storage.kept import Kept, program_of, sealed
 from ..version import __version__
 
 if TYPE_CHECKING:
@@ -20,6 +18,7 @@ if TYPE_CHECKING:
     from ..tori.proved import ProvedTorus
     from ..tori.rotation import Rotation
 
+FIRST_LINE = "converse diagram 1"
 Value = Any                             # of one parameter; of two parameters, of each one
 Box = Tuple[Ends, ...]                  # for each parameter (low, high)
 Side = Tuple[Fraction, Tuple[Fraction, ...], Tuple[int, ...]]       # value, x in turns, n
@@ -111,6 +110,8 @@ class Diagram(Kept):
     restored
         How many members were read from a file, and are believed.
     """
+
+    KIND = "diagram"
 
     family: SymplecticMap
     members: List[Member] = field(default_factory=list)
@@ -245,8 +246,8 @@ class Diagram(Kept):
     @property
     def proofs(self) -> "List[Proof]":
         """The proofs that there are no tori."""
-        from ..prover.proof_file import parsed
-        return [parsed(member.text, "a proof of the diagram") for member in self.members
+        from ..prover.proof_file import proof_of
+        return [proof_of(check.content(member.text.encode())) for member in self.members
                 if member.rotation is None]
 
     @property
@@ -347,7 +348,7 @@ class Diagram(Kept):
     # ---- the file
 
     def _text(self) -> str:
-        lines = [DIAGRAM_LINE.decode(), "program: converse " + self.version]
+        lines = [FIRST_LINE, "program: converse " + self.version]
         lines += ["wave: %d %d %s %s" % (*wave.k, wave.phase, " ".join(
             map(check.exact_text, (wave.middle, *wave.parts)))) for wave in self.waves]
         lines += ["parameter: %s %s %s" % (name, *map(check.exact_text, ends))
@@ -361,24 +362,18 @@ class Diagram(Kept):
         return sealed([*lines, *[member.text[:-1] for member in self.members]])
 
     @classmethod
-    def load(cls, path: Path) -> "Diagram":
-        text = files.read_text(path, "diagram", ": the file is truncated or not a diagram")
-        try:
-            claim = check.read_diagram(text.encode())
-            made = cls._of_waves(claim.family.waves, claim.family.names, claim.ranges)
-            made.members = [_member(member) for member in claim.members]
-            made.sides = {side: (value, x, n) for side, value, x, n in claim.sides}
-            made.search = claim.header.get("search", [])
-            made.version = claim.header["program"].partition(" ")[2]
-            made.points, made.seconds = (kind(claim.header[name]) for name, kind in (
-                ("points", int), ("seconds", float)))
-            count = len(made.ranges)
-            made.seen = [Seen(tuple(map(exact, words[:count])), tuple(map(float, words[count:])))
-                         for words in map(str.split, claim.header.get("seen", []))]
-        except (check.Failure, ValueError) as error:
-            raise ConverseError("%s: %s; use an intact copy or start anew"
-                                % (path, error)) from None
-        made.sha256, made.restored = claim.sha256, len(made.members)
+    def _of(cls, content: Any) -> "Diagram":
+        header = content.header
+        made = cls._of_waves(content.family.waves, content.family.names, content.ranges)
+        made.members = [_member(member) for member in content.members]
+        made.sides = {side: (value, x, n) for side, value, x, n in content.sides}
+        made.search = header.get("search", [])
+        made.points, made.seconds = int(header["points"]), float(header["seconds"])
+        count = len(made.ranges)
+        made.seen = [Seen(tuple(map(exact, words[:count])), tuple(map(float, words[count:])))
+                     for words in map(str.split, header.get("seen", []))]
+        made.version, made.sha256 = program_of(header), content.sha256
+        made.restored = len(made.members)
         return made
 
 

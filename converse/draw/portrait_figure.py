@@ -114,12 +114,14 @@ def column(portrait, xstar):
     ends, weights = [], []
     k, _, _ = portrait.problem.waves[0]
     for region in portrait.found[xstar]:
-        for kind, (index, cuts) in tree.cells(region.tree):
+        (low, high), shifts = region.problem.v0, region.problem.shifts
+        shift = float(shifts[1][0]) if shifts else 0.0
+        for kind, (index, cuts) in tree.cells(region.text):
             if kind != "U":
                 continue
             u, t = ((2 * index[axis] + 1) / 2 ** cuts[axis] - 1 for axis in (0, 3))
-            half = float(region.half)
-            centre = float(region.centre) + float(region.shift) * t + half * u
+            half = float(high - low) / 2
+            centre = float(low + high) / 2 + shift * t + half * u
             w, y = math.pi * centre - float(xstar), float(xstar)
             if portrait.strip:
                 y += math.asin(t * k * float(portrait.strip)) / k

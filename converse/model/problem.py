@@ -6,7 +6,7 @@ from functools import cached_property
 from math import gcd
 from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
 
-from ..storage.files import ConverseError
+from ..storage.files import ConverseError, plain
 from .exact import Ends, Number, decimal_text, integer, is_decimal, is_integer, outward, range_text
 from .lattice import echelon
 from .map import HIGHEST, PLACES, THESIS, Numbers, Range, SymplecticMap, ends_of, exact_of
@@ -39,7 +39,7 @@ class Problem:
         The ranges of the angles of x_1, in units of pi; by default they cover the torus, as a
         theorem needs.
     comments
-        For the report and the proof file.
+        For the report and the proof file.  Control characters in them become escapes.
     axes
         The frame, x_1 = frame.(v0, v1), as (f00, f01, f10, f11).  By default, where v0 and v1 are
         all of the torus, the frame is chosen with the region that stands for the torus (region.py);
@@ -83,8 +83,7 @@ class Problem:
         if not all(isinstance(comment, str) for comment in comments):
             raise TypeError("comments are strings")
         object.__setattr__(self, "comments", tuple(
-            line.encode("utf-8", "backslashreplace").decode("utf-8")
-            for comment in comments for line in (comment.splitlines() or [""])))
+            plain(line) for comment in comments for line in (comment.splitlines() or [""])))
         self._check_choices()
         self._check_shifts()
 

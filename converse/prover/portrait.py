@@ -9,28 +9,29 @@ certain depth, and whatever is undecided then stays so.
 import concurrent.futures
 import math
 import re
-from collections import Counter
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
-from ..model.exact import decimal_text, exact, integer, is_integer, pi_bounds, rounded, rounded_text
+from ..model.exact import decimal_text, integer, is_integer, pi_bounds, rounded, rounded_text
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..model.region import MARGIN, PLACES, reversal_centre
 from ..model.statement import conditions, ended, indented, map_lines
 from ..storage.backup import Backup
-from ..storage.files import ConverseError, Path
-from ..storage.kept import Kept, headline, read_sealed, sealed, unsealed, verify_text
+from ..storage.files import Path
+from ..storage.kept import Kept, headline, program_of, sealed, verify_text
 from ..storage.signals import interruptible
 from ..version import __version__
-from . import native, tree
+from . import native
+from .proof import Tree
+from .proof_file import map_of, part_lines, tree_of, wave_lines
+from .resume import check_release
 from .settings import Settings
 from .workers import Deadline, Filling, WorkerPool, check_options
 
-FIRST_LINE = "converse portrait 1"
-FIELDS = "program", "strip", "even about", "depth", "columns", "undecided"
+FIRST_LINE = "converse portrait 2"
 DIGITS = 12                             # decimals of x* and of the width of strips
 SHARE_DIGITS = 6                        # decimals of the share that a file says, rounded up
 WIDEST = 0.5                            # half the width of a strip times k; share() needs less
@@ -41,23 +42,6 @@ MOST_COLUMNS = 1 << 16                  # a limit of the checker
 # units of the height of the smallest prisms.
 SAMPLES, STEPS, SEPARATED, TURNED, MOVED = 64, 12, 96.0, 0.1, 5.0
 BARREN = re.compile("[0-4]UU")          # a cut that separates nothing proved
-
-
-@dataclass(frozen=True)
-class Region:
-    """Successors of a column, |v - centre - shift t2| <= half with x_1 = x* + ... = pi v, and their
-    tree; all of it exact, in units of pi."""
-
-    centre: Fraction
-    half: Fraction
-    shift: Fraction
-    tree: str
-
-    @cached_property
-    def lost(self) -> Dict[Tuple[int, int], int]:
-        """How many undecided leaves there are, by their cuts along v0 and along t2."""
-        return Counter((cuts[0], cuts[3]) for kind, (_, cuts) in tree.cells(self.tree)
-                       if kind == "U")
 
 
 @dataclass(eq=False, repr=False)
@@ -78,7 +62,8 @@ class Portrait(Kept):
     columns
         How many columns the circle was to have.
     found
-        By x*, the regions of the columns that are done.
+        By x*, the trees of the columns that are done, each over a region of successors: it moves
+        along strips by the second parameter of `patch`.
     seconds
         The duration of the search.
     sha256
@@ -89,12 +74,14 @@ class Portrait(Kept):
         How many columns were read from a file, and are believed.
     """
 
+    KIND = "portrait"
+
     problem: Problem
     strip: Fraction
     even: Optional[Fraction]
     depth: int
     columns: int
-    found: Dict[Fraction, Tuple[Region, ...]] = field(default_factory=dict)
+    found: Dict[Fraction, Tuple[Tree, ...]] = field(default_factory=dict)
     seconds: float = 0.0
     sha256: str = ""
     version: str = __version__
@@ -180,9 +167,9 @@ class Portrait(Kept):
             From 0 to 1.
         """
         angle = self.problem.waves[0][0] * self.strip
-        lost = sum(2 * region.half * number / 2 ** (cuts + (along if self.strip else 0))
-                   for region in self.found[xstar]
-                   for (cuts, along), number in region.lost.items())
+        lost = sum((high - low) * number / 2 ** (cuts[0] + (cuts[3] if self.strip else 0))
+                   for region in self.found[xstar] for low, high in [region.problem.v0]
+                   for cuts, number in region.undecided.items())
         return min(lost * (1 + angle * angle), Fraction(1))
 
     @property
@@ -212,7 +199,7 @@ class Portrait(Kept):
         """
         shares = [self.share(x) for x in self.found]
         of = "phase space" if self.strip else "the successors in them, on average"
-        proved = any("P" in region.tree for each in self.found.values() for region in each)
+        proved = any("P" in region.text for each in self.found.values() for region in each)
         claim = ["has no rotational invariant circle through the points (y, y' - y) of these "
                  "prisms that lie in no undecided prism, nor through the images of such points by "
                  "the reversal of time"] if proved else ["was examined"]
@@ -266,46 +253,24 @@ class Portrait(Kept):
         return portrait_figure.draw(self, None, tori, ax)
 
     def _text(self) -> str:
-        problem, shown = self.problem, decimal_text
-        return sealed([
-            FIRST_LINE, "program: converse " + self.version,
-            *["wave: " + " ".join([str(k0), str(k1), str(phase), *map(shown, numbers)])
-              for (k0, k1, phase), *numbers in zip(problem.waves, problem.amplitude,
-                                                   *problem.parts)],
-            "strip: " + shown(self.strip),
-            "even about: " + ("no" if self.even is None else str(self.even)),
-            "depth: %d" % self.depth, "columns: %d" % self.columns,
-            "undecided: " + shown(self.undecided), "columns:",
-            *[" ".join([*map(shown, (x, region.centre, region.half, region.shift)), region.tree])
-              for x in sorted(self.found) for region in self.found[x]]])
+        lines = [FIRST_LINE, "program: converse " + self.version, *wave_lines(self.problem),
+                 "strip: " + decimal_text(self.strip),
+                 "even about: " + ("no" if self.even is None else str(self.even)),
+                 "depth: %d" % self.depth, "columns: %d" % self.columns,
+                 "undecided: " + decimal_text(self.undecided), "parts:"]
+        regions = [region for x in sorted(self.found) for region in self.found[x]]
+        return sealed([*lines, *(line for n, region in enumerate(regions, 1)
+                                 for line in part_lines(str(n), region))])
 
     @classmethod
-    def load(cls, path: Path) -> "Portrait":
-        lines, sha256 = unsealed(read_sealed(path, "portrait"), path, FIRST_LINE, "portrait")
-        try:
-            start = lines.index("columns:")
-            pairs = [line.split(": ", 1) for line in lines[1:start]]
-            waves = [value.split() for name, value in pairs if name == "wave"]
-            values = dict(pairs)
-            numbers = [list(map(exact, wave[3:])) for wave in waves]
-            problem = Problem(SymplecticMap(
-                [(int(k0), int(k1), Fraction(phase)) for k0, k1, phase, *_ in waves],
-                [p for p, *_ in numbers], list(zip(*[parts for _, *parts in numbers]))))
-            even = values["even about"]
-            portrait = cls(problem, exact(values["strip"]),
-                           None if even == "no" else Fraction(even), int(values["depth"]),
-                           int(values["columns"]), sha256=sha256,
-                           version=values["program"].partition(" ")[2])
-            for line in lines[start + 1:]:
-                x, centre, half, shift, nodes = line.split(" ")
-                portrait.found[exact(x)] = portrait.found.get(exact(x), ()) + (
-                    Region(exact(centre), exact(half), exact(shift), nodes),)
-            portrait.restored = len(portrait.found)
-            portrait.undecided          # TreeError: a tree is none
-        except (KeyError, IndexError, TypeError, ValueError) as error:
-            raise ConverseError("%s: the portrait makes no sense (%s); use an intact copy or start "
-                                "anew" % (path, error)) from None
-        return portrait
+    def _of(cls, content: Any) -> "Portrait":
+        header = content.header
+        made = cls(Problem(map_of(content)), content.strip, content.even, int(header["depth"]),
+                   int(header["columns"]), sha256=content.sha256, version=program_of(header),
+                   restored=len(content.columns))
+        made.found = {column[0].xstar[0]: tuple(tree_of(region, made.patch) for region in column)
+                      for column in content.columns}
+        return made
 
 
 def _of_circle(problem):
@@ -378,9 +343,8 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
     with interruptible(), Backup(path, resumed=path if resume else None) as backup:
         if path is not None and resume and asked is None:
             portrait = Portrait.load(path)
-            if portrait.version != __version__ and not portrait.complete:
-                raise ConverseError("%s: is of another program, %s; continue it with that release, "
-                                    "or start anew" % (path, portrait.version))
+            if not portrait.complete:
+                check_release(portrait, path)
         elif asked is not None and not resume:
             portrait = asked
         else:
@@ -403,8 +367,8 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
 
 
 def column(patch: Problem, strip: Fraction, depth: int, xstar: Fraction,
-           stop: Callable[[], bool] = bool) -> Optional[Tuple[Region, ...]]:
-    """The regions of a column, with their trees; None: stop() returned True.  A worker calls
+           stop: Callable[[], bool] = bool) -> Optional[Tuple[Tree, ...]]:
+    """The trees of the regions of a column; None: stop() returned True.  A worker calls
     it."""
     star, found = (decimal_text(xstar), "0"), []
     for problem in regions_of(patch, strip, depth, star):
@@ -414,9 +378,7 @@ def column(patch: Problem, strip: Fraction, depth: int, xstar: Fraction,
         grown = native.grow(task, look=stop)
         if grown is None:
             return None
-        found.append(Region((low + high) / 2, (high - low) / 2,
-                            problem.shifts[1][0] if problem.shifts else Fraction(0),
-                            pruned(grown.text)))
+        found.append(Tree(problem, star, pruned(grown.text)))
     return tuple(found)
 
 

@@ -3,13 +3,13 @@
 The methods that report, draw, save and load are conveniences: what they call knows Proof and is
 imported when it is called for, since matplotlib takes a while."""
 
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Dict, List, Optional, Tuple
 
 from ..model.problem import Problem
 from ..model.region import symmetries_used
-from ..storage.files import Path
 from ..storage.kept import Kept
 from ..version import __version__
 from . import tree
@@ -45,6 +45,11 @@ class Tree:
     def decided(self) -> bool:
         """Is the tree whole and without an undecided prism?"""
         return "U" not in self.text and tree.complete(self.text)
+
+    @cached_property
+    def undecided(self) -> Dict[Tuple[int, ...], int]:
+        """How many undecided leaves have so many cuts along each axis."""
+        return Counter(cuts for kind, (_, cuts) in tree.cells(self.text) if kind == "U")
 
 
 @dataclass(frozen=True, repr=False)
@@ -83,6 +88,8 @@ class Proof(Kept):
     sha256
         The SHA-256 of the proof's file, uncompressed; "" if there is none.
     """
+
+    KIND = "proof"
 
     trees: Tuple[Tree, ...]
     settings: Settings = Settings()
@@ -243,6 +250,6 @@ class Proof(Kept):
         return text_of(self)
 
     @classmethod
-    def load(cls, path: Path) -> "Proof":
-        from .proof_file import load
-        return load(path)
+    def _of(cls, content):
+        from .proof_file import proof_of
+        return proof_of(content)

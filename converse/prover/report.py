@@ -11,7 +11,7 @@ from ..model.problem import IDENTITY, frame_text
 from ..model.region import folds
 from ..model.statement import (TORUS, conditions, ended, indented, labelled, map_lines, one_angle,
                                parameters, whole)
-from ..storage.kept import verify_text
+from ..storage.kept import headline, verify_text
 from . import report_1989, tree
 from .report_1989 import MORE_TIME, deeper, quoted
 from .settings import DEPTH, DOUBLES, HOPELESS, LENGTH, REGION, THEOREM, TIME
@@ -63,7 +63,7 @@ def _advised(text, file):
 def _theorem(proof):
     problem, part = proof.problem, proof.conclusion == REGION
     torus = TORUS[problem.map.dimension]
-    lines = ["THEOREM" + ", for a part of the torus only" * part,
+    lines = [headline("THEOREM" + ", for a part of the torus only" * part, proof.restored, "prism"),
              *map_lines(problem), "  has no " + torus
              + " J = P + S'(y) over both angles, P constant, S periodic and C1"
              * (problem.map.dimension == 2)]
@@ -160,9 +160,6 @@ def _grounds(proof, file):
     if proof.parts:
         yield "Links", "an invariant torus that leads from its x* into a linked prism leads from " \
             "the x* of a part into the region of that part (manual: proofs/argument, section 10)"
-    if proof.restored:
-        yield "Restored", "%s read from a backup, which is believed" % _many(proof.restored,
-                                                                             "prism")
     if proof.sha256:
         yield "SHA-256", proof.sha256 + " (proof file)"
     yield "Time", "%.2f s" % proof.seconds

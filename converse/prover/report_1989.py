@@ -4,7 +4,7 @@ number formats, and below it what a theorem rests on."""
 import math
 
 from ..model.exact import decimal_text, short_text
-from ..storage.files import plain
+from ..storage.kept import believed
 from . import tree
 from .settings import AS_PRINTED, LIMIT, REGION, THEOREM, TIME, UNDECIDED
 
@@ -42,14 +42,14 @@ def header(problem, as_printed=False):
     lines += ["v[%d] : %.14e \t %.14e" % (i, problem.centre[i - 2] * math.pi,
                                           problem.half[i - 2] * math.pi) for i in range(2)]
     lines += ["", "Comments :", "",
-              *(plain(comment) if as_printed else quoted(comment) for comment in problem.comments),
+              *(comment if as_printed else quoted(comment) for comment in problem.comments),
               "", PLUSES]
     return "\n".join(lines) + "\n"
 
 
 def quoted(comment):
     """A line of the input, marked as such."""
-    return ("> " + plain(comment)).rstrip()
+    return ("> " + comment).rstrip()
 
 
 def verdict(proof):
@@ -155,8 +155,7 @@ def _grounds(proof):
     lines += ["Tries that failed : %d" % sum(proof.counts.reasons),
               *("%d : %s" % pair for pair in zip(proof.counts.reasons, REASONS) if pair[0])]
     if proof.restored:
-        lines += ["Restored : %d prisms were read from a backup, which is believed"
-                  % proof.restored]
+        lines += ["Restored : " + believed(proof.restored, "prism")]
     if proof.sha256:
         lines += ["Proof file : SHA-256 " + proof.sha256]
     return lines

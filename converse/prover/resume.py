@@ -1,10 +1,18 @@
-"""What an unfinished proof is continued with: the same search, or a deeper one."""
+"""What an unfinished result is continued with: the same release, and the same search or a deeper
+one."""
 
 from dataclasses import replace
 
 from ..storage.files import ConverseError
 from ..version import __version__
 from . import tree
+
+
+def check_release(result, name):
+    """ConverseError, if a result cannot be continued, as it is of another release."""
+    if result.version != __version__:
+        raise ConverseError("%s: is of converse %s; continue it with that release, or start anew"
+                            % (name, result.version))
 
 
 def continued(proof, name, changes):
@@ -19,8 +27,7 @@ def continued(proof, name, changes):
         raise ConverseError("%s: is of another run (%s: there %s, here %s); name the backup of "
                             "this run or start anew" % (name, what, theirs, ours))
 
-    if proof.version != __version__:
-        differs("program", proof.version, __version__)
+    check_release(proof, name)
     if settings.depth < proof.settings.depth:
         differs("depth", proof.settings.depth, settings.depth)
     if "U" in proof.tree and proof.settings.stubborn and not (settings.stubborn or deeper):

@@ -1,9 +1,9 @@
-"""Results that have a file: proofs, portraits, maps of parameter space, tori."""
+"""Results that have a file: proofs, portraits, diagrams, tori."""
 
 import os
 import re
 import shlex
-from typing import TYPE_CHECKING, List, Optional, Tuple, Type, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Dict, List, Optional, Type, TypeVar
 
 from . import files
 from .files import ConverseError, Path
@@ -16,6 +16,14 @@ Result = TypeVar("Result", bound="Kept")
 
 class Kept:
     """A result that has a file."""
+
+    KIND: ClassVar[str]                 # of the file, as its first line says
+
+    @classmethod
+    def _of(cls: Type[Result], content: Any) -> Result:
+        """The result that is the content of a file, as the checker reads it.  KeyError, ValueError:
+        it makes no sense."""
+        raise NotImplementedError
 
     def _text(self) -> str:
         """The content of the file."""
@@ -54,13 +62,17 @@ class Kept:
         Raises
         ------
         ConverseError
-            The file cannot be read, is of another kind, or is damaged; the text says where.
+            The file cannot be read, is of another kind or release, or is damaged.
         """
-        raise NotImplementedError
+        content = read(path, cls.KIND)
+        try:
+            return cls._of(content)
+        except (KeyError, IndexError, TypeError, ValueError) as error:
+            raise unsound(path, "the file makes no sense (%s)" % error) from None
 
     def verify(self, jobs: int = 1) -> "check.Result":
         """Verifies the result anew by the code of converse-check, which believes nothing of it and
-        shares nothing with the program that found it.
+        shares no mathematics with the program that found it.
 
         Parameters
         ----------
@@ -80,10 +92,42 @@ class Kept:
         return files.verified(self, jobs)
 
 
+def read(path: Path, kind: str) -> Any:
+    """The content of a file of this kind.  The checker's reader is the only one.
+
+    ConverseError: the file cannot be read, is of another kind or release, or is damaged."""
+    from .. import check
+    files.check_name(path)
+    try:
+        return check.read(os.fspath(path), kind)
+    except check.Unusable as error:
+        raise ConverseError("%s: %s" % (path, error)) from None
+    except check.Failure as error:
+        raise unsound(path, error) from None
+
+
+def unsound(path: Path, wrong: object) -> ConverseError:
+    """The error that a file is wrong."""
+    return ConverseError("%s: %s; use an intact copy or start anew" % (path, wrong))
+
+
+def program_of(header: Dict[str, Any]) -> str:
+    """The release that wrote a file.  ValueError: it is none of this program."""
+    name, _, release = header["program"].partition(" ")
+    if name != "converse" or not re.fullmatch("[0-9A-Za-z.+-]{1,40}", release):
+        raise ValueError("of an unknown program")
+    return release
+
+
 def headline(theorem: str, restored: int, noun: str) -> str:
     """The first line of a theorem, which says how much of it this run only read."""
-    return theorem + (", of which %s %s%s read from a file that is believed" % (
-        format(restored, ","), noun, "s were" if restored > 1 else " was")) * bool(restored)
+    return theorem + (", of which " + believed(restored, noun)) * bool(restored)
+
+
+def believed(restored: int, noun: str) -> str:
+    """How many things a run only read."""
+    return "%s %s%s read from a file that is believed" % (
+        format(restored, ","), noun, "s were" if restored > 1 else " was")
 
 
 def verify_text(file: Optional[Path], what: str) -> str:
@@ -102,37 +146,3 @@ def sealed(lines: List[str]) -> str:
     """The text of such lines, with the checksum."""
     text = "\n".join(lines) + "\n"
     return text + "checksum: sha256 %s\nend\n" % files.sha256(text)
-
-
-def read_sealed(path: Path, what: str) -> str:
-    """The text of such a file.  ConverseError: it cannot be read, or is not text; the message
-    calls it by the word `what`."""
-    return files.read_text(path, what, ", line 1: the file is truncated or not a %s of this program"
-                           % what)
-
-
-def unsealed(text: str, path: Path, first_line: str, what: str) -> Tuple[List[str], str]:
-    """The lines of such a text without the checksum, and the text's SHA-256.
-
-    ConverseError: it does not begin with this line, or is damaged; the message calls it by the word
-    `what`, and names its path."""
-    lines, (kind, _, version) = text.split("\n"), first_line.rpartition(" ")
-    if re.fullmatch(kind + " [0-9]+", lines[0]) and lines[0] != first_line:
-        raise ConverseError("%s: is a %s of another format; this release reads format %s, so "
-                            "continue it with the release that wrote it" % (path, what, version))
-    if lines[0] != first_line:
-        raise damaged(path, 1, "the lines end in CR LF, so the file was altered on its way"
-                      if lines[0].startswith(kind) and lines[0].endswith("\r") else
-                      "this is not a %s of this program" % what)
-    if lines[-2:] != ["end", ""]:
-        raise damaged(path, len(lines), "something follows the end" if "end" in lines else
-                      "the file is truncated")
-    if sealed(lines[:-3]) != text:
-        raise damaged(path, len(lines) - 2, "the file was changed or damaged (wrong checksum)")
-    return lines[:-3], files.sha256(text)
-
-
-def damaged(path: Path, number: int, wrong: str) -> ConverseError:
-    """The error that a line of a file is wrong."""
-    return ConverseError("%s, line %d: %s; use an intact copy or start anew"
-                         % (path, number, wrong))

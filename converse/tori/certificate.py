@@ -2,23 +2,21 @@
 the rotation vector and the modes of the torus, exactly, which are the claim; and the norm and strip
 in which it is verified.  The checker's parser is the only one."""
 
-import os
 from dataclasses import replace
-from typing import List, NamedTuple, Sequence, Tuple, Union
+from typing import List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
 from .. import check
 from ..model.exact import decimal_text
 from ..model.potential import FourierSum
-from ..storage import files
-from ..storage.files import ConverseError
+from ..storage import kept
+from ..storage.files import Path
 from ..version import __version__
 from .rotation import Rotation, name_of
 from .torus import Strip, Torus
 
 FIRST_LINE = "converse torus 1"
-Path = Union[str, "os.PathLike[str]"]
 
 
 class Certificate(NamedTuple):
@@ -52,12 +50,7 @@ def read(path: Path) -> Certificate:
     ConverseError
         In one line: the file cannot be read, is not a certificate, or was changed or damaged.
     """
-    try:
-        claim = check.read(os.fspath(path))
-    except check.Failure as error:
-        raise ConverseError("%s: %s; use an intact copy or prove it anew" % (path, error)) from None
-    if not isinstance(claim, check.TorusClaim):
-        raise ConverseError("%s: is not a certificate of a torus" % path)
+    claim = kept.read(path, "torus")
     return Certificate(tori_of(claim), claim.sha256)
 
 
@@ -104,8 +97,7 @@ def text(tori: Sequence[Torus]) -> str:
               "pieces: %d" % len(tori), "tori:"]
     for torus in tori:
         lines += _piece(torus)
-    body = "\n".join(lines) + "\n"
-    return body + "checksum: sha256 %s\nend\n" % files.sha256(body)
+    return kept.sealed(lines)
 
 
 def _words(numbers):

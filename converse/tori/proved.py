@@ -265,7 +265,7 @@ def _verified(tori, jobs, tell, keep=None):
         keep(text)
     tell("verifying the torus" if len(tori) == 1 else "verifying %d pieces" % len(tori))
     try:
-        claim = check.read_torus(text.encode())
+        claim = check.content(text.encode())
         _, facts = check.verify_torus(claim, lambda words: tell("verifying: " + words), jobs)
     except check.NotConfirmed as error:
         if not hasattr(error, "needed"):

@@ -48,7 +48,7 @@ def _rotation_lines(rotation: Rotation) -> Iterator[Tuple[str, str]]:
 def _input_lines(problem: Optional[Problem]) -> Iterator[Tuple[str, str]]:
     comments = problem.comments if problem else ()
     for label, comment in zip(["Input"] + [""] * len(comments), comments):
-        yield label, ("> " + plain(comment)).rstrip()
+        yield label, ("> " + comment).rstrip()
 
 
 def _names(name, n):

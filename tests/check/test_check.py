@@ -121,7 +121,7 @@ def with_parameters(text, *pairs):
 
 
 def claim_of(text):
-    return check.parse(text.split("\ntree:")[0].encode(), tree_of(text), "")
+    return check.content(sealed(text).encode())
 
 
 def above(cell):
@@ -519,7 +519,7 @@ def test_header_lines(texts, run):
                        (text.replace("at once: no", "at once: No"), "neither yes nor no"),
                        (text.replace("alone: no\n", ""), "lacks alone"),
                        (text.replace("at once: no\n", "at once: no\nat once: yes\n"), "twice"),
-                       (text.replace("\ntree:\n", "\ntrees:\n"), "no tree")):
+                       (text.replace("\ntree:\n", "\ntrees:\n"), "no line 'tree:'")):
         status, _, err = run(sealed(other))
         assert status == 1 and why in err
     status, _, err = run(re.sub("sha256 .", "sha256 g", text))
@@ -535,10 +535,18 @@ def test_unreadable(run, data):
 
 
 def test_other_versions_and_line_ends(texts, run):
+    release = re.search("program: converse (.*)", texts["trig278"])[1]
     for version in ("1", "2", "3", "4", "5", "7", "6.0", "", "66" * 999):
         status, _, err = run(texts["trig278"].replace("proof 6", "proof " + version))
-        assert status == 2 and err.endswith(
-            "of another version; this checker knows version 6\n") and err.count("\n") == 1
+        assert status == 2 and err.count("\n") == 1
+        assert (" is a proof file of another version, which converse %s reads (pip install "
+                "converse-kam==%s)\n" % (release, release) in err) == (len(version) == 1), err
+    status, _, err = run(re.sub("(?m)^program: .*", "program: x", texts["trig278"]).replace(
+        "proof 6", "proof 9"))
+    assert status == 2 and "another version, which another release of converse reads" in err
+    status, _, err = run('{"format": 3, "program": "converse 5.2.0", "region": "k"}')
+    assert status == 2 and " is a map of another version, which converse 5.2.0 reads (" in err
+    assert run('{"harmonics": []}')[0] == 2
     status, _, err = run(texts["trig278"].replace("\n", "\r\n"))
     assert status == 1 and "CR LF" in err
     assert run(texts["trig278"].replace("\n", "\r"))[0] == 2
@@ -555,6 +563,15 @@ def test_numbers(texts, run, name, value, status, why):
     text = texts["trig274"]
     found, out, err = run(sealed(with_field(text, name, value)))
     assert (found, out) == (status, "") and why in err and err.count("\n") == 1
+
+
+@pytest.mark.parametrize("control", [
+    "\x00", "\x0b", "\x1b[31m", "\x1c", "\x7f", "\x85", "\x9b", "\r"])
+def test_no_control_character_stands_in_a_header(texts, run, control):
+    text = texts["trig278"].replace("\ntree:", "\ncomment: tabs\tare text, \u03b5 \u00e9\ntree:")
+    assert run(sealed(text))[0] == 0
+    status, out, err = run(sealed(text.replace("are text", control)))
+    assert (status, out) == (1, "") and "contains a control character" in err
 
 
 def test_the_longest_numbers_of_an_input_are_within_the_limits_of_the_checker(run, tmp_path):

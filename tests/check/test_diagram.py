@@ -180,7 +180,7 @@ def test_all_values_beyond_one(run, diagram, side, line, confirmed):
     (lambda t: with_line(t, "above", "0.15 1/2 0 1 0"), 1, "must be wrong"),
     (lambda t: with_line(t, "points", "0\nx: y"), 1, "unknown meaning"),
     (lambda t: sealed(t.replace("points: 0\n", "")), 1, "lacks points"),
-    (lambda t: sealed(t.replace("members:\n", "")), 1, "are no members"),
+    (lambda t: sealed(t.replace("members:\n", "")), 1, "no line 'members:'"),
     (lambda t: with_members(re.sub("(?m)^above: .*\n", "", t)), 1, "claims no theorem"),
     (lambda t: with_members(t, members(t)[1][0][:-4]), 1, "the last member is not whole"),
     (lambda t: with_members(t, "junk\n" + members(t)[1][0]), 2, "member 1: "),

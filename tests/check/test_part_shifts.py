@@ -34,7 +34,7 @@ def text_of(link):
 def part_claim(waves, xstar, ranges):
     """Of a part with these lines of v0 and v1, as a claim of its own."""
     v0, v1 = [list(map(Fraction, words.split())) for words in ranges]
-    claim = check.read_proof(file_of("P", waves=waves, xstar=xstar).encode())
+    claim = check.content(file_of("P", waves=waves, xstar=xstar).encode())
     return dataclasses.replace(claim, centre=(v0[0], v1[0]), half=(v0[1], v1[1]),
                                shifts=tuple(zip(v0[2:], v1[2:])), where="part a")
 
@@ -236,7 +236,7 @@ def test_the_later_part_alone(later, run, by, status):
 def test_a_link_that_misses_at_one_end_of_the_parameters(both):
     """What is left out of the region is at one end of the leaf's parameters, and only there."""
     link = cut_end(both, 0, "v0", -1, "1e-30")
-    claim = check.read_proof(text_of(link).encode())
+    claim = check.content(text_of(link).encode())
     (_, cell), = [leaf for leaf in check.leaves(claim.tree, kinds="Pa")
                   if claim.tree[leaf[0]] == "a"]
     part, out = claim.parts[0], []
@@ -250,7 +250,7 @@ def test_links_of_regions_that_move_alike(run):
     """They lose nothing: the later region is hardly wider than the leaf."""
     shifts = [("0.003", "-0.002")]
     link = chain(ONE, [(XSTAR, shifts), (XSTAR, shifts)])
-    claim = check.read_proof(text_of(link).encode())
+    claim = check.content(text_of(link).encode())
     a, b = claim.parts
     (_, cell), = [leaf for leaf in check.leaves(a.tree, kinds="Pb") if a.tree[leaf[0]] == "b"]
     for n in (0, 1):
@@ -270,7 +270,7 @@ def test_each_shift_counts_alone(idle, line, m):
     """None is taken for none because others are 0."""
     lines = [words.split()[:2] + ["0", "0"] for words in idle["parts"][0][1:3]]
     lines[line][2 + m] = "0.25"
-    part, = check.read_proof(text_of(with_lines(idle, 0, *map(" ".join, lines))).encode()).parts
+    part, = check.content(text_of(with_lines(idle, 0, *map(" ".join, lines))).encode()).parts
     assert part.shifts == tuple(tuple(Fraction((i, n) == (line, m), 4) for i in (0, 1))
                                 for n in (0, 1))
 
@@ -307,7 +307,7 @@ def test_no_orbit_of_a_proved_leaf_minimizes(both, idle):
     graph's map may do to them is in the region of the part, for the same parameters."""
     draw, linked = random.Random(5), 0
     for link in (both, idle):
-        claim = check.read_proof(text_of(link).encode())
+        claim = check.content(text_of(link).encode())
         check.check_tree(claim)
         criterion, waves = check.Criterion(claim), [(wave.k, 0) for wave in claim.waves]
         for part in (claim, *claim.parts):

@@ -74,7 +74,7 @@ def file_of(tree, v0=HALF[0], v1=HALF[1], waves=SYMMETRIC, frame=DIAGONALS, xsta
 
 
 def claim_of(text):
-    return check.read_proof(text.encode())
+    return check.content(text.encode())
 
 
 def found(v0=HALF[0], v1=HALF[1], **more):

@@ -243,7 +243,7 @@ def test_each_piece_is_verified(root, run, expected, pattern, new):
 
 def test_the_whole_of_each_piece_is_verified(root):
     """The amplitudes at sigma = -1 and 1 are those at its ends, and u is the file's."""
-    claim = torus_file.read_torus(
+    claim = check.content(
         (root / "golden_outputs" / "tori" / "standard-0.1-0.75.torus").read_bytes())
     setting = tori.Setting(claim)
     for piece, ends in zip(claim.pieces, (("0.1", "0.425"), ("0.425", "0.75"))):
@@ -947,7 +947,7 @@ def test_losses_of_single_steps():
 
 def small_torus(modes, wave="1 0 0 0.5", bits=40):
     text = (HEADER % len(modes)).replace("1 0 0 0.5", wave).replace("0 0 40", "0 0 %d" % bits)
-    claim = torus_file.read_torus(sealed(text + modes_text(modes)).encode())
+    claim = check.content(sealed(text + modes_text(modes)).encode())
     return tori.Torus(tori.Setting(claim), claim.pieces[0], True)
 
 
@@ -1224,7 +1224,7 @@ def test_the_theorem_is_asked_in_the_norm_of_the_file(root, monkeypatch):
     asked, allowed = [], tori.allowed
     monkeypatch.setattr(tori, "allowed", lambda *arguments: (
         asked.append(arguments[3]), allowed(*arguments))[1])
-    claim = torus_file.read_torus((root / "golden_outputs" / "tori" / "phases.torus").read_bytes())
+    claim = check.content((root / "golden_outputs" / "tori" / "phases.torus").read_bytes())
     tori.verify_torus(claim)
     kappa = tori.Setting(claim).norm.kappa
     assert kappa != 1 and len(asked) == 2 and set(asked) == {kappa}

@@ -17,7 +17,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from converse.check import field, series, tori, torus_file
+from converse.check import content, field, series, tori
 from converse.check.series import FINE, Box, Ring
 
 ROUGH = 1e-9                            # the sums of this file have a smaller relative error
@@ -501,7 +501,7 @@ def random_case(seed, size=0.05, bits=24, is_odd=False):
 def torus_of(case, is_odd=False):
     text = case.text + "checksum: sha256 %s\nend\n" % hashlib.sha256(
         case.text.encode()).hexdigest()
-    claim = torus_file.read_torus(text.encode())
+    claim = content(text.encode())
     piece = max(claim.pieces, key=lambda piece: len(piece.modes))
     return tori.Torus(tori.Setting(claim), piece, is_odd)
 

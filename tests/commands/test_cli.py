@@ -140,7 +140,7 @@ def test_backup_and_restore(run, sample, output, tmp_path):
                       ["--restore", backup, "--backup", tmp_path / "other.gz"]):
         status, out, err = run(*arguments)
         assert (status, timeless(out).split("Restored")[0], err) == (0, output, "")
-        assert "Restored : 121 prisms were read from a backup, which is believed\n" in out
+        assert "Restored : 121 prisms were read from a file that is believed\n" in out
     assert Proof.load(tmp_path / "other.gz").no_tori
     assert hashlib.sha256(backup.read_bytes()).hexdigest() == sha256
 

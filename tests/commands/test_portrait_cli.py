@@ -63,7 +63,7 @@ def test_portrait_is_kept_continued_and_drawn(run, inputs, tmp_path):
     ("two angles", [], "a portrait is of a map of one angle"),
     ("two", ["--columns", 20], "strips are for a single wave"),
     (None, ["-r", "missing"], "missing: cannot be read"),
-    (None, ["-r", "there"], "there, line 1: this is not a portrait"),
+    (None, ["-r", "there"], "there: is not a proof file, a diagram, a portrait or a certificate"),
     ("nothing", [], "nothing"),
 ])
 def test_bad_usage_is_one_line(run, inputs, tmp_path, monkeypatch, name, arguments, word):
@@ -91,8 +91,8 @@ def test_depth_that_proves_nothing_is_told(run, inputs):
 
 @pytest.mark.parametrize("change, word", [
     (lambda text: text.replace("depth: 4", "depth: 5"), "wrong checksum"),
-    (lambda text: text[:-40], "the file is truncated"),
-    (lambda text: text.replace("portrait 1", "portrait 2", 1), "reads format 1")])
+    (lambda text: text[:-40], "it is truncated"),
+    (lambda text: text.replace("portrait 2", "portrait 1", 1), "another version, which converse ")])
 def test_damaged_portrait_is_not_continued(run, inputs, tmp_path, change, word):
     path = tmp_path / "damaged"
     assert run(inputs["standard"], "--columns", 30, "--depth", 4, "-b", path)[0] == 0

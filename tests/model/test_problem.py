@@ -187,8 +187,10 @@ def test_the_core_refuses_what_no_problem_can_say(text, monkeypatch):
 
 
 def test_comments_are_lines(tmp_path):
-    problem = Problem(MuldoonMap(2, 2, 2), comments=("one\ntwo\r\nthree", "", "a\udc80b", "tree:"))
-    assert problem.comments == ("one", "two", "three", "", "a\\udc80b", "tree:")
+    problem = Problem(MuldoonMap(2, 2, 2), comments=(
+        "one\ntwo\r\nthree", "", "a\udc80b", "tree:", "\x1b[31mred\x00\x9b"))
+    assert problem.comments == (
+        "one", "two", "three", "", "a\\udc80b", "tree:", r"\x1b[31mred\x00\x9b")
     proof = prove(problem, method="loewner", backup=tmp_path / "a.proof")
     assert type(proof).load(tmp_path / "a.proof") == replace(proof, seconds=0)
     assert Problem(MuldoonMap(2, 2, 2), comments="one line").comments == ("one line",)

@@ -1,6 +1,7 @@
 """Portraits of phase space: what is proved, what is never excluded, and files that are refused."""
 
 import math
+import re
 from dataclasses import replace
 from fractions import Fraction
 
@@ -9,7 +10,7 @@ import pytest
 from files import sealed
 
 from converse import ConverseError, MuldoonMap, StandardMap, SymplecticMap, check, tori
-from converse.check.portrait import check_places, patch_of_strip, read_portrait, read_region, share
+from converse.check.portrait import check_places, patch_of_strip, read_region, share
 from converse.model.problem import Problem
 from converse.prover import tree
 from converse.prover.portrait import Portrait, portray, pruned
@@ -40,13 +41,13 @@ def strips(tmp_path_factory):
 def prisms_of(region):
     """The proved prisms of a region: rows of the ends of t2, and of v and its half-width at t2 = 0,
     in units of pi, in doubles."""
-    rows = []
-    for kind, (index, cuts) in tree.cells(region.tree):
+    rows, (low, high) = [], region.problem.v0
+    for kind, (index, cuts) in tree.cells(region.text):
         if kind == "P":
             u, t = ((2 * index[axis] + 1) / 2 ** cuts[axis] - 1 for axis in (0, 3))
             rows.append((t - 0.5 ** cuts[3], t + 0.5 ** cuts[3],
-                         float(region.centre + region.half * Fraction(u)),
-                         float(region.half) / 2 ** cuts[0]))
+                         float(low + (high - low) * Fraction(1 + u) / 2),
+                         float(high - low) / 2 / 2 ** cuts[0]))
     return np.array(rows).reshape(-1, 4)
 
 
@@ -67,7 +68,8 @@ def excluded_points(portrait, torus):
         for region in regions:
             low, high, v, half = prisms_of(region)[:, :, None].transpose(1, 0, 2)
             t = np.sin(s[here]) / float(portrait.strip)
-            off = v + float(region.shift) * t - (w[here] + float(star)) / math.pi
+            shift = float(region.problem.shifts[1][0]) if region.problem.shifts else 0.0
+            off = v + shift * t - (w[here] + float(star)) / math.pi
             off -= 2 * np.round(off / 2)
             inside = (low - EPSILON <= t) & (t <= high + EPSILON) & (abs(off) < half - EPSILON)
             wrong += [(star, *point) for point in zip(s[here][inside.any(axis=0)],
@@ -151,12 +153,14 @@ def test_no_point_of_twenty_circles_is_excluded(k, least):
     ("even about: 1/2", "even about: no", "undecided is"),
     ("wave: 1 0 0 0.9", "wave: 1 0 0 0.8", "does not hold enough"),
     ("wave: 1 0 0 0.9", "wave: 1 1 0 0.9", "not those of a map of one angle"),
-    ("columns:\n", "columns:\n9.5 0 1 0 P\n", "not in their order"),
-    ("columns:\n1.6", "columns:\n1.59", "lies outside"),
+    ("xstar: 1.6", "xstar: 9.6", "not in their order"),
+    ("xstar: 1.6", "xstar: 1.59", "lies outside"),
+    ("parts:\n", "parts:\nP\n", "not followed by a part"),
     ("P\nchecksum", "?\nchecksum", "not a node"),
     ("U\n", "P\n", "undecided is"),
-    ("P\n", "\n", "incomplete"), ("P\n", "1PP\n", "cuts an angle"), ("P\n1", "P\r1", "not four"),
-    ("P\n1", "P\x0b1", "not four"), ("P\n1", "P\x851", "not four"),
+    ("P\n", "\n", "incomplete"), ("P\n", "1PP\n", "cuts an angle"),
+    ("v1: 1 1", "v1: 1 1\r", "not two"), ("v1: 1 1", "v1: 1\x0b1", "not two"),
+    ("v1: 1 1 0 0\n", "v1: 1 1 0 0\x85", "each on its line"),
     ("columns: 60", "colours: 60", "unknown meaning"),
     ("depth: 10\n", "", "lacks depth"),
 ])
@@ -173,6 +177,14 @@ def test_altered_portraits_are_rejected(strips, tmp_path, old, new, why):
         check.verify(path)
 
 
+def region_of(waves, strip, nodes):
+    """The part of a file over this tree, of half a turn of successors."""
+    over = check.claim.Claim(waves, *[(Fraction(1),) * 2] * 2, (1, 0, 0, 1), None, None, {}, "no",
+                             "", "")
+    text = "1\nxstar: 1 0\nv0: 0.5 0.5\nv1: 1 1\ntree:\n" + nodes
+    return read_region("1", text, over, strip)
+
+
 @pytest.mark.parametrize("tree, strip, lost", [
     ("0UP", 0, "1/2"), ("2UP", 0, "1"), ("2U0UP", 0, "3/2"), ("3UP", "0.01", "1/2"),
     ("30UPP", "0.01", "1/4"), ("2UP", "0.01", "1"), ("4UP", "0.01", "1")])
@@ -180,21 +192,20 @@ def test_cuts_of_parameters_do_not_lessen_what_is_undecided(tree, strip, lost):
     """But for that of t2, along which the strip is cut."""
     wave = check.claim.Wave((1, 0), Fraction(0), Fraction(1), (Fraction(1, 10),))
     patch = patch_of_strip(wave, Fraction(strip)) if strip else (wave,)
-    claim = read_region("1 0.5 1 0 " + tree, patch, Fraction(strip), "a line", "")
-    assert claim.counts["lost"] == Fraction(lost)
+    assert region_of(patch, Fraction(strip), tree).counts["lost"] == Fraction(lost)
 
 
 def test_the_share_of_a_slice_of_t2_is_that_of_the_points_of_the_strip():
     """s = arcsin(angle t2)/k: the outermost slices of t2 hold more of s than of t2."""
     wave = check.claim.Wave((1, 0), Fraction(0), Fraction(1), ())
     strip = Fraction(1, 2)
-    claim = read_region("1 0.5 0.5 0 3P3P3P3PU", patch_of_strip(wave, strip), strip, "a line", "")
+    claim = region_of(patch_of_strip(wave, strip), strip, "3P3P3P3PU")
     true = math.asin(0.5) - math.asin(0.5 * 7 / 8)          # over the strip's width, 1
     assert true <= share([claim], strip) < 1.2 * true
 
 
 def test_strips_lie_in_one_turn(strips):
-    portrait = read_portrait(strips[1].read_bytes())
+    portrait = check.content(strips[1].read_bytes())
     first = portrait.claims[0]
     for further in 6.1, 6.3:
         last = replace(first, xstar=(first.xstar[0] + Fraction(further), 0))
@@ -213,17 +224,17 @@ def test_leaf_that_is_not_proved_is_not_confirmed(strips, tmp_path, monkeypatch)
     portrait, path = strips
     x = portrait.stars[0]
     forged = Portrait.load(path)
-    forged.found[x] = tuple(replace(region, tree=region.tree.replace("U", "P"))
+    forged.found[x] = tuple(replace(region, text=region.text.replace("U", "P"))
                             for region in portrait.found[x])
     forged.save(tmp_path / "forged")
     for module in check.criterion, check.lockstep:
         monkeypatch.setattr(module, "MAX_PIECES", 16)       # of a leaf: not to search for long
-    with pytest.raises(check.NotConfirmed, match="column line .*: proved leaf .* is not excluded"):
+    with pytest.raises(check.NotConfirmed, match="part .*: proved leaf .* is not excluded"):
         check.verify(tmp_path / "forged")
 
 
 def test_portrait_is_not_verified_if_no_leaf_is_looked_at(strips, monkeypatch):
-    monkeypatch.setattr(check.run, "check_leaves", lambda *_: None)
+    monkeypatch.setattr(check.run, "check_leaves", lambda *_: (0, 0, 0))
     with pytest.raises(RuntimeError, match="0 of [0-9]+ parts of the proof"):
         check.verify(strips[1])
 
@@ -238,20 +249,55 @@ def test_regions_must_hold_the_successors_for_all_of_the_strip(strips):
         if count > 2:
             break
         before += count
-    at, refusal = lines.index("columns:\n") + 1 + before, "line %d: .*not hold" % (1 + before)
-    for n in range(count):
+    refusal = "part %d: .*not hold" % (1 + before)
+    for n in range(1 + before, 1 + before + count):
+        at = lines.index("part: %d\n" % n) + 2
+        _, centre, half, zero, shift, *rest = lines[at].split()
+        centre, half, shift = map(Fraction, (centre, half, shift))
         for end in 1, -1:
-            words = lines[at + n].split(" ")
-            words[1:3] = [check.decimal_text(Fraction(word) + sign * Fraction("1e-8"))
-                          for word, sign in zip(words[1:3], (end, -1))]
-            text = "".join([*lines[:at + n], " ".join(words), *lines[at + n + 1:]])
-            with pytest.raises(check.Rejected, match=refusal):
-                read_portrait(sealed(text).encode())
-            shift = check.decimal_text(Fraction(words[3]) + end * Fraction("0.01"))
-            words = [*lines[at + n].split(" ")[:3], shift, words[4]]
-            text = "".join([*lines[:at + n], " ".join(words), *lines[at + n + 1:]])
-            with pytest.raises(check.Rejected, match=refusal):
-                read_portrait(sealed(text).encode())
+            off = Fraction("1e-8")
+            for numbers in (centre + end * off, half - off, shift), (
+                    centre, half, shift + end * Fraction("0.01")):
+                c, h, s = map(check.decimal_text, numbers)
+                line = " ".join(["v0:", c, h, zero, s, *rest]) + "\n"
+                text = "".join([*lines[:at], line, *lines[at + 1:]])
+                with pytest.raises(check.Rejected, match=refusal):
+                    check.content(sealed(text).encode())
+
+
+@pytest.mark.parametrize("old, new", [
+    (r"xstar: (\S+) 0", r"xstar: \1 1e-9"), ("v1: 1 1", "v1: 1 0.999"), ("v1: 1 1", "v1: 1.1 1"),
+    (r"v0: (\S+) (\S+) 0 ", r"v0: \1 \2 1e-9 "), ("v1: 1 1", "v1: 1 1 0 1e-9"),
+    ("part: 2", "part: 3"), ("part: 1\n", "part: 1\nwave: 1 0 0 1\n"),
+    (r"v0: (\S+) \S+", r"v0: \1 -1")])
+def test_a_part_that_is_no_region_of_a_column_is_refused(strips, old, new):
+    """Another angle, a region that moves with another parameter than that of strips, or in v1."""
+    text = strips[1].read_text()
+    changed = re.sub(old, new, text, count=1)
+    assert changed != text
+    with pytest.raises(check.Rejected):
+        check.content(sealed(changed).encode())
+
+
+def test_lines_do_not_move(tmp_path):
+    path = tmp_path / "lines"
+    portray(standard("0.9", "0.01"), path=path, columns=8, depth=6, strips=False)
+    whole = path.read_text()
+    for shift in "0", "1e-9":
+        text = sealed(re.sub(r"v0: (\S+) (\S+)", r"v0: \1 \2 " + shift, whole, count=1))
+        if shift == "0":
+            check.content(text.encode())
+        else:
+            with pytest.raises(check.Rejected, match="part 1 .* moves"):
+                check.content(text.encode())
+
+
+def test_a_portrait_that_has_nothing_yet_is_continued(tmp_path):
+    path = tmp_path / "portrait"
+    assert not portray(standard("0.9"), path=path, columns=20, depth=6, time_limit=0).found
+    with pytest.raises(check.Rejected, match="claims no theorem"):
+        check.verify(path)
+    assert portray(path=path, resume=True).complete
 
 
 @pytest.mark.slow
@@ -335,7 +381,7 @@ def test_what_was_only_read_is_told_in_the_headline(strips, tmp_path):
     again.found.pop(min(again.found))
     again.version = "4.0"
     again.save(other)
-    with pytest.raises(ConverseError, match="is of another program, 4.0; continue it with that"):
+    with pytest.raises(ConverseError, match="is of converse 4.0; continue it with that release"):
         portray(path=other, resume=True)
 
 

@@ -45,7 +45,7 @@ RUNS = {
                   (check, "x.proof", PROVED, {"Leaves", "x*"})],
     "undecided": [(cli, "--method loewner -d 6 $/standard-k090.in -b x.proof", PARTLY,
                    {"Undecided", "Tries", "To try"}),
-                  (cli, "-r x.proof", PARTLY, {"Restored"})],
+                  (cli, "-r x.proof", PARTLY, {"Tries"})],
     "1989": [(cli, "-d 3 $/trig274.in", PARTLY, {"Undecided prisms", "To try"})],
     "a circle": [(tori_cli, "prove $/standard-k090.in --rotation golden -b x.torus", PROVED,
                   {"Constants", "Series"}),

@@ -277,7 +277,7 @@ def test_a_linked_proof(linked, tmp_path):
     lambda text: text.replace("method: loewner", "method: thesis"),
 ])
 def test_wrong_parts(linked, tmp_path, change):
-    with pytest.raises(ConverseError, match="makes no sense"):
+    with pytest.raises(ConverseError, match="use an intact copy or start anew"):
         Proof.load(changed(linked, tmp_path / "proof", change))
 
 

@@ -194,10 +194,10 @@ def test_comments_are_not_the_programs_words(made_up):
 
 
 def test_a_loaded_proof_says_whence_it_is(made_up):
-    assert "Restored" not in made_up("0PS").report()
-    assert "\nRestored : 2 prisms were read from a backup, which is believed" in \
+    assert "believed" not in made_up("0PS").report()
+    assert "\nRestored : 2 prisms were read from a file that is believed\n" in \
         made_up("0PS", restored=2).report()
-    assert "\nRestored   2 prisms read from a backup, which is believed\n" in \
+    assert "THEOREM, of which 2 prisms were read from a file that is believed\n" in \
         made_up("0PS", restored=2, method="loewner").report()
 
 

@@ -296,20 +296,20 @@ def test_the_lines_of_a_part(moved, tmp_path):
 
 
 @pytest.mark.parametrize("change, wrong", [
-    (lambda text: text.replace("proof 6", "proof six"), "not a proof file of this program"),
-    (lambda text: text.replace("\n", "\r\n"), "line 1: the lines end in CR LF"),
-    (lambda text: re.sub("(part: b\n.*\nv0: .*)", r"\1 0", text), "v0 .* 4 numbers, not 2 or 3"),
-    (lambda text: re.sub("(part: b\n.*\n.*\nv1: .*)", r"\1 0", text), "v1 .* 4 numbers, not 2 or"),
-    (lambda text: re.sub("(part: b\n.*\nv0: [^ ]*).*", r"\1", text), "v0 .* 1 numbers"),
-    (lambda text: re.sub("\n(v0: .*)", r"\n\1 0", text, count=1), "v0 has 3 numbers, not 2"),
-    (lambda text: re.sub("(part: b\n.*\nv0: .*) .*", r"\1 1/3", text), "not a decimal number"),
+    (lambda text: text.replace("proof 6", "proof six"), "is not a proof file"),
+    (lambda text: text.replace("\n", "\r\n"), "its lines end in CR LF"),
+    (lambda text: re.sub("(part: b\n.*\nv0: .*)", r"\1 0", text), "b's v0 is not two or 3"),
+    (lambda text: re.sub("(part: b\n.*\n.*\nv1: .*)", r"\1 0", text), "b's v1 is not two or 3"),
+    (lambda text: re.sub("(part: b\n.*\nv0: [^ ]*).*", r"\1", text), "b's v0 is not two or 3"),
+    (lambda text: re.sub("\n(v0: .*)", r"\n\1 0", text, count=1), "header's v0 is not two decimal"),
+    (lambda text: re.sub("(part: b\n.*\nv0: .*) .*", r"\1 1/3", text), "b's v0 is not two or 3"),
     (lambda text: re.sub("(part: b\n.*\nv0: .*) .*", r"\1 1e301", text), "out of range"),
     (lambda text: re.sub("(part: b\n.*\nv0: [^ ]*) [^ ]*", r"\1 -1", text), "negative"),
-    (lambda text: re.sub("(part: b\n.*\nv0: .*) .*", r"\1 inf", text), "not a decimal number"),
+    (lambda text: re.sub("(part: b\n.*\nv0: .*) .*", r"\1 inf", text), "b's v0 is not two or 3"),
     (lambda text: re.sub("P\n(?=checksum)", "S\n", text), r"part is skipped \(S\), though"),
-    (lambda text: re.sub("(wave: .*) .*\n", r"\1\n", text), "v[01] .* 3 numbers, not 2[^ ]"),
+    (lambda text: re.sub("(wave: .*) .*\n", r"\1\n", text), "v[01] is not two decimal numbers"),
     (lambda text: re.sub("(v[01]: [^ \n]+ [^ \n]+) .*", r"\1 1 1 1",
-                         re.sub("(wave: .*) .*\n", r"\1\n", text)), "v0 .* 5 numbers, not 2[^ ]")])
+                         re.sub("(wave: .*) .*\n", r"\1\n", text)), "v0 is not two decimal")])
 def test_wrong_numbers_of_parts(moved, tmp_path, change, wrong):
     with pytest.raises(ConverseError, match=wrong) as caught:
         Proof.load(changed(moved, tmp_path / "proof", change))
