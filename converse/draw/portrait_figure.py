@@ -55,8 +55,8 @@ def fill(axes, portrait, tori=()):
 
 def title(portrait):
     """The theorem, in two lines."""
-    waves = ["%s%s" % (short_text(p), "".join(r" \pm " + short_text(g) for g in parts))
-             for p, *parts in zip(portrait.problem.amplitude, *portrait.problem.parts)]
+    waves = [r" \pm ".join(map(short_text, (term.p, *term.parts)))
+             for term in portrait.problem.terms]
     return "amplitude $%s$; coloured: proved, no rotational circle\n%s undecided: %s%% of %s" % (
         ", ".join(waves), "strips," if portrait.strip else "lines,",
         rounded_text(100 * portrait.undecided, 3, up=True),

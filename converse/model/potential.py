@@ -23,11 +23,35 @@ from typing import Dict, Iterator, NamedTuple, Tuple
 from .exact import Ends, number_text, pi_bounds, sine_bounds
 
 Wave = Tuple[int, int, Fraction]        # k0, k1 and the phase in units of pi
-Term = Tuple[Tuple[int, int], Ends, Ends]
+Rows = Iterator[Tuple[Tuple[int, int], Ends, Ends]]
 QUARTER = Fraction(1, 2)                # A quarter turn in units of pi: sin(t + pi/2) = cos t.
 # The phases, in units of pi, with which a term - p sin(t + pi phase) of V is p times such a word.
 PHASES = {"-sin": Fraction(0), "-cos": QUARTER, "+sin": Fraction(1), "+cos": -QUARTER}
 QUARTERS = ("sin", 1), ("cos", 1), ("sin", -1), ("cos", -1)     # sin(y + n pi/2): function, sign
+
+
+class Term(NamedTuple):
+    """What a wave adds to -V over a patch: (p + sum of t[m] parts[m]) sin(k.y + pi phase), with all
+    t[m] from -1 to 1."""
+
+    k: Tuple[int, int]
+    phase: Fraction
+    p: Fraction
+    parts: Tuple[Fraction, ...]
+
+    @property
+    def half(self) -> Fraction:
+        """How far the amplitude goes from p."""
+        return sum(map(abs, self.parts), Fraction(0))
+
+    @property
+    def most(self) -> Fraction:
+        """The largest size of the amplitude."""
+        return abs(self.p) + self.half
+
+    def at(self, t) -> Fraction:
+        """The amplitude at such t."""
+        return sum(map(Fraction.__mul__, map(Fraction, t), self.parts), self.p)
 
 
 class FourierSum(NamedTuple):
@@ -39,7 +63,7 @@ class FourierSum(NamedTuple):
     amplitude: Tuple[Fraction, ...]
     dimension: int
 
-    def terms(self, digits: int) -> Iterator[Term]:
+    def terms(self, digits: int) -> Rows:
         """Yields the terms c cos k.y + d sin k.y of V: ((k0, k1), (ends of c), (ends of d)).
 
         Waves with rational c and d are exact, and added up for each k.  Each other wave is a

@@ -10,7 +10,7 @@ from ..storage.files import ConverseError, plain
 from .exact import Ends, Number, decimal_text, integer, is_decimal, is_integer, outward, range_text
 from .lattice import echelon
 from .map import HIGHEST, PLACES, THESIS, Numbers, Range, SymplecticMap, ends_of, exact_of
-from .potential import Wave, sum_text
+from .potential import Term, Wave, sum_text
 
 NAMES = ("a", "b", "c", "v0", "v1")
 IDENTITY = 1, 0, 0, 1
@@ -199,6 +199,12 @@ class Problem:
         """For each parameter t[m] in [-1, 1] its contribution to each amplitude at t[m] = 1."""
         return self.map.enclosed[1]
 
+    @cached_property
+    def terms(self) -> Tuple[Term, ...]:
+        """The waves with their amplitudes over the patch."""
+        return tuple(Term((k0, k1), phase, p, tuple(parts)) for (k0, k1, phase), p, *parts in zip(
+            self.waves, self.amplitude, *self.parts))
+
     @property
     def parameters(self) -> Tuple[Tuple[str, Fraction, Fraction], ...]:
         """The name of each parameter and its range, (name, low, high), in which reports state
@@ -239,8 +245,7 @@ class Problem:
     @cached_property
     def present(self) -> List[Tuple[Tuple[int, int], Fraction]]:
         """The waves that are nonzero somewhere in the patch: (k0, k1), and |p| in its middle."""
-        return [((k0, k1), abs(p)) for (k0, k1, _), p, *parts
-                in zip(self.waves, self.amplitude, *self.parts) if p or any(parts)]
+        return [(term.k, abs(term.p)) for term in self.terms if term.most]
 
     def _best_frame(self):
         """The frame where none is given.  If all waves depend on one q.y, which is not a
@@ -271,10 +276,10 @@ class Problem:
         return int(bends[1] > bends[0]) if felt == {(True, False), (False, True)} else None
 
     @property
-    def searched(self) -> Tuple[int, ...]:
-        """Which of the waves the search needs."""
-        return tuple(j for j, k in enumerate(self.waves)
-                     if self.factor is None or k[1 - self.factor] == 0)
+    def searched(self) -> Tuple[Term, ...]:
+        """The waves that the search needs."""
+        return tuple(term for term in self.terms
+                     if self.factor is None or term.k[1 - self.factor] == 0)
 
     @cached_property
     def odd(self) -> Optional[Ends]:
@@ -309,9 +314,8 @@ class Problem:
     @property
     def half(self) -> Numbers:
         """The half-widths of the same ranges."""
-        widths = tuple(sum(map(abs, parts), Fraction(0)) for parts in zip(*self.parts)) \
-            if self.parts else (Fraction(0),) * len(self.waves)
-        return widths + tuple((high - low) / 2 for low, high in (self.v0, self.v1))
+        return (*(term.half for term in self.terms),
+                *((high - low) / 2 for low, high in (self.v0, self.v1)))
 
     @property
     def full_torus(self) -> bool:

@@ -107,13 +107,12 @@ def reversal_centre(problem: Problem, xstar: Point) -> Ends:
     row, star = inverse(problem.frame)[0], tuple(map(Fraction, xstar))
     ends = [row[0] * star[0] + row[1] * star[1]] * 2
     moves = [[Fraction(0)] * 2 for _ in problem.parts]
-    for j in problem.searched:
-        k0, k1, phase = problem.waves[j]
+    for (k0, k1), phase, p, parts in problem.searched:
         cosine = _cosine(k0 * star[0] + k1 * star[1], phase)
         weight = (row[0] * k0 + row[1] * k1) / 2
-        _add(ends, weight * problem.amplitude[j], cosine)
-        for move, part in zip(moves, problem.parts):
-            _add(move, weight * part[j], cosine)
+        _add(ends, weight * p, cosine)
+        for move, part in zip(moves, parts):
+            _add(move, weight * part, cosine)
     for move, (shift, _) in zip(moves, problem.shifts):
         _add(move, -shift, pi_bounds(DIGITS))
     reach = sum([max(map(abs, move)) for move in moves], Fraction(0))
@@ -161,9 +160,7 @@ def _frame(problem, xstar):
         return EXCHANGED if problem.factor else IDENTITY
     if exchangeable(problem, xstar):
         return DIAGONALS
-    bends = [(abs(p) + sum(map(abs, parts))) * (k0 * k0 + k1 * k1) for (k0, k1, _), p, *parts
-             in zip(problem.waves, problem.amplitude, *problem.parts)]
-    k0, k1, _ = problem.waves[bends.index(max(bends))]
+    k0, k1 = max(problem.terms, key=lambda term: term.most * sum(k * k for k in term.k)).k
     common = math.gcd(k0, k1)
     k0, k1 = k0 // common, k1 // common
     if 0 in (k0, k1):

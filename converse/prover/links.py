@@ -103,9 +103,8 @@ def crests(problem: Problem) -> List[Fraction]:
     found = []
     for signs in product((-1, 1), repeat=len(problem.parts)):
         d = [Fraction(2), Fraction(0), Fraction(2)]
-        for (k0, k1, _), p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
-            size = abs(p + sum(sign * part for sign, part in zip(signs, parts)))
-            d = [x + size * k for x, k in zip(d, (k0 * k0, k0 * k1, k1 * k1))]
+        for term in problem.terms:
+            d = _with(d, abs(term.at(signs)), term.k)
         found.append(_up((d[0] + d[2]) / 2 + _root((d[0] - d[2]) ** 2 / 4 + d[1] ** 2)))
     return found
 
@@ -128,13 +127,17 @@ def _spread(problem, l, centre, reach):
     """D = K - l, K >= beta(x) - l for all parameters and all x = centre - reach .. centre +
     reach: three numbers.  Each wave is taken where it is largest."""
     d = [2 - 2 * l, Fraction(0), 2 - 2 * l]
-    for (k0, k1, phase), p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
-        h = sum(map(abs, parts), Fraction(0))
-        y = (k0 * centre[0] + k1 * centre[1]) / PI[0]
+    for term in problem.terms:
+        y = _dot(term.k, centre) / PI[0]
         off = 4 * abs(y) * (PI[1] - PI[0])          # as PI[0] is not pi
-        size = _most(p - h, p + h, y + phase, abs(k0) * reach[0] + abs(k1) * reach[1] + off)
-        d = [x + size * k for x, k in zip(d, (k0 * k0, k0 * k1, k1 * k1))]
+        d = _with(d, _most(term.p - term.half, term.p + term.half, y + term.phase,
+                           _dot(map(abs, term.k), reach) + off), term.k)
     return d
+
+
+def _with(d, size, k):
+    """d with size times k k' added."""
+    return [d[0] + size * k[0] * k[0], d[1] + size * k[0] * k[1], d[2] + size * k[1] * k[1]]
 
 
 def _applied(d, x):
@@ -142,7 +145,7 @@ def _applied(d, x):
 
 
 def _dot(x, y):
-    return x[0] * y[0] + x[1] * y[1]
+    return sum(a * b for a, b in zip(x, y))
 
 
 def _over_pi(low, high):
@@ -173,8 +176,7 @@ class Links:
 def _slice(problem, index, cuts):
     """The problem for such a slice of its parameters."""
     t = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(index, cuts)]
-    amplitude = [p + sum(map(Fraction.__mul__, t, parts))
-                 for p, *parts in zip(problem.amplitude, *problem.parts)]
+    amplitude = [term.at(t) for term in problem.terms]
     parts = [[p / (1 << k) for p in part] for part, k in zip(problem.parts, cuts)]
     return replace(problem, map=SymplecticMap(problem.waves, amplitude, parts), axes=problem.frame,
                    comments=(), shifts=())

@@ -205,11 +205,10 @@ def native_problem(problem, owners):
         return native_text(decimal_text(x), owners)
 
     waves = ffi.new("cv_wave[]", [
-        {"k": wave[:2], "phase": native_text(_nearly(wave[2]), owners),
-         "amplitude": text(p if i in problem.searched else 0),
-         "part": [text(part if i in problem.searched else 0) for part in parts]}
-        for i, (wave, p, *parts) in enumerate(zip(problem.waves, problem.amplitude,
-                                                  *problem.parts))])
+        {"k": term.k, "phase": native_text(_nearly(term.phase), owners),
+         "amplitude": text(term.p if term in problem.searched else 0),
+         "part": [text(part if term in problem.searched else 0) for part in term.parts]}
+        for term in problem.terms])
     owners.append(waves)
     ends = problem.v0, problem.v1
     return ffi.new("cv_problem *", {

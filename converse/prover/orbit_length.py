@@ -59,8 +59,7 @@ def _all_proved(problem, xstar, end: Sequence[int], threads, is_late) -> bool:
 def _axis(problem) -> int:
     """The coordinate of v that the waves depend on."""
     f00, _, f10, _ = problem.frame
-    return 0 if any(k0 * f00 + k1 * f10 for j, (k0, k1, _) in enumerate(problem.waves)
-                    if j in problem.searched) else 1
+    return 0 if any(k0 * f00 + k1 * f10 for (k0, k1), *_ in problem.searched) else 1
 
 
 def _thinnest(axis, level, place, end) -> Tuple[List[int], List[int], int]:

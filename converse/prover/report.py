@@ -83,7 +83,7 @@ def _theorem(proof):
 def _undecided(proof, file):
     problem, undecided = proof.problem, proof.undecided
     torus = {1: "a rotational invariant circle", 2: "an invariant torus"}[problem.map.dimension]
-    flat = not any(map(any, (problem.amplitude, *problem.parts)))
+    flat = not problem.present
     lines = ["UNDECIDED: nothing is proved.  There may be %s (see converse-tori)." % torus,
              *map_lines(problem), *ended(indented(["was examined " + " ".join(
                  conditions(problem))])), ""]
@@ -111,8 +111,7 @@ def _undecided(proof, file):
 def _advice(proof, stuck, flat):
     if flat:
         return "amplitudes that are not all 0: the map without potential has invariant tori"
-    if any(abs(p) + sum(map(abs, parts)) >= HUGE
-           for p, *parts in zip(proof.problem.amplitude, *proof.problem.parts)):
+    if any(term.most >= HUGE for term in proof.problem.terms):
         return "amplitudes below 2^60, near 10^18: larger ones do not fit into its numbers"
     ended, texts = proof.ended, [each.text for each in proof.trees]
     across, along = (sum(text.count(axis) for text in texts for axis in axes)

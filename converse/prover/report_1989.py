@@ -99,7 +99,7 @@ def _gaps(proof):
             "%s < v[%d] / pi < %s" % (short_text(c - h, h / 100), i, short_text(c + h, h / 100))
             if h else "v[%d] / pi = %s" % (i, short_text(c))
             for i, (c, h) in enumerate(zip(leaf.centre, leaf.half)))]
-    if not any(map(any, (proof.problem.amplitude, *proof.problem.parts))):
+    if not proof.problem.present:
         return lines + ["To try : amplitudes that are not all 0, as the map without potential has "
                         "invariant tori."]
     return lines + ["To try : the sharper criterion (--method loewner)%s." % (

@@ -24,8 +24,8 @@ def best_shifts(problem, amplitude, xstar, text):
     parameter what it adds to v0 and v1 at its upper end, in units of pi.
 
     text: a tree over xstar for these amplitudes, and the region of the problem."""
-    waves = [(float(k0), float(k1), math.pi * phase, float(p), *map(float, parts))
-             for (k0, k1, phase), p, *parts in zip(problem.waves, amplitude, *problem.parts)]
+    waves = [(*map(float, term.k), math.pi * term.phase, float(p), *map(float, term.parts))
+             for term, p in zip(problem.terms, amplitude)]
     star, sums = [float(x) for x in xstar], [[0.0] * (2 + len(problem.parts)) for _ in range(2)]
     for v in _hardest(problem, text):
         for rows in _ends(waves, problem.frame, star, v, FLAT_STEPS if problem.is_flat else STEPS):

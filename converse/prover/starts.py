@@ -260,14 +260,11 @@ def has_width(problem):
 
 def _weakest(problem):
     """The corner of the parameters where the waves bend least, as signs, and the problem there."""
-    def corner(signs):
-        return [p + sum(s * part for s, part in zip(signs, parts))
-                for p, *parts in zip(problem.amplitude, *problem.parts)]
-
     signs = min(product((-1, 1), repeat=len(problem.parts)), key=lambda signs: sum(
-        abs(p) * (k0 * k0 + k1 * k1) for p, (k0, k1, _) in zip(corner(signs), problem.waves)))
-    return signs, replace(problem, map=SymplecticMap(problem.waves, corner(signs)),
-                          axes=problem.frame, alone=None, comments=(), shifts=())
+        abs(term.at(signs)) * sum(k * k for k in term.k) for term in problem.terms))
+    return signs, replace(problem, map=SymplecticMap(
+        problem.waves, [term.at(signs) for term in problem.terms]), axes=problem.frame, alone=None,
+        comments=(), shifts=())
 
 
 def _reaches(cell, signs):

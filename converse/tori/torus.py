@@ -46,19 +46,18 @@ def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
     TypeError: it is not a map, nor the problem of one.  ValueError: there is more than one
     parameter, or no wave."""
     problem = Problem.of(source)
-    parts = [part for part in problem.parts if any(part)]
+    parts = [m for m, part in enumerate(problem.parts) if any(part)]
     if len(parts) > 1:
         raise ValueError("the problem has %d parameters where one is possible; make the other "
                          "ranges single numbers, or let them change together" % len(parts))
-    part = parts[0] if parts else (Fraction(0),) * len(problem.waves)
-    present = [j for j, p in enumerate(problem.amplitude) if p or part[j]]
-    if not present:
+    terms = [term for term in problem.terms if term.most]
+    if not terms:
         raise ValueError("V is 0: every torus J = constant is invariant, and there is nothing "
                          "to prove; give an amplitude that is not 0")
-    waves = tuple(problem.waves[j] for j in present)
-    potential = FourierSum(waves, tuple(problem.amplitude[j] for j in present),
-                           2 if any(k1 for _, k1, _ in waves) else 1)
-    return potential, tuple(part[j] for j in present) if parts else None
+    potential = FourierSum(tuple((*term.k, term.phase) for term in terms),
+                           tuple(term.p for term in terms),
+                           2 if any(term.k[1] for term in terms) else 1)
+    return potential, tuple(term.parts[m] for term in terms for m in parts) if parts else None
 
 
 def problem_of(torus: "Torus") -> Problem:

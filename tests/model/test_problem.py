@@ -243,7 +243,7 @@ def test_the_thesis_in_waves():
     assert problem.amplitude == (Fraction("0.35"), Fraction("0.2"), Fraction("0.6"))
     assert problem.parts == ((Fraction("0.05"), 0, 0), (0, 0, 0), (0, 0, Fraction("0.1")))
     assert problem.tied().parts == ((Fraction("0.05"), 0, Fraction("0.1")),)
-    assert (problem.frame, problem.factor, problem.searched) == (IDENTITY, None, (0, 1, 2))
+    assert (problem.frame, problem.factor, problem.searched) == (IDENTITY, None, problem.terms)
 
 
 WAVE = {"amplitude": [1], "waves": [(1, 0)]}
@@ -362,7 +362,7 @@ def test_frames_of_the_thesis():
 def test_a_coordinate_alone(amplitude, waves, kept):
     problem = Problem(SymplecticMap(waves, amplitude))
     assert problem.factor == kept
-    assert [problem.waves[j][:2] for j in problem.searched] == [
+    assert [term.k for term in problem.searched] == [
         k for k in waves if kept is None or k[1 - kept] == 0]
     both = replace(problem, alone="no")
     assert both.factor is None and len(both.searched) == len(waves)
