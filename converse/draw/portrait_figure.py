@@ -65,8 +65,8 @@ def title(portrait):
 
 def force(problem, y):
     """V'(y) in the middle of the patch."""
-    return -sum(float(p) * k * np.cos(k * y + math.pi * float(phase))
-                for (k, _, phase), p in zip(problem.waves, problem.amplitude))
+    return -sum(float(term.p) * term.k[0] * np.cos(term.k[0] * y + math.pi * float(term.phase))
+                for term in problem.terms)
 
 
 def orbits(problem):

@@ -142,13 +142,13 @@ class Portrait(Kept):
         """The problem whose lines are the columns: docs/how-to/portrait.md."""
         if not self.strip:
             return self.problem
-        (wave,), (p,) = self.problem.waves, self.problem.amplitude
-        (g,), = self.problem.parts or ((Fraction(0),),)
-        angle = wave[0] * self.strip
+        ((k, _), phase, p, reach), = self.problem.terms
+        g, = reach or (Fraction(0),)
+        angle = k * self.strip
         bend = angle * angle / 4
         zero = Fraction(0)
         parts = [(bend * abs(p) + abs(g), zero), (zero, p * angle)] + [(zero, g * angle)] * bool(g)
-        return Problem(SymplecticMap((wave, (*wave[:2], wave[2] + Fraction(1, 2))),
+        return Problem(SymplecticMap(((k, 0, phase), (k, 0, phase + Fraction(1, 2))),
                                      (p * (1 - bend), zero), parts))
 
     # ---- what is proved
@@ -275,17 +275,16 @@ class Portrait(Kept):
 
 def _of_circle(problem):
     """The problem with its waves alone that are there.  ValueError: it has two angles."""
-    seen = [j for j, (p, *parts) in enumerate(zip(problem.amplitude, *problem.parts))
-            if p or any(parts)]
-    if any(problem.waves[j][1] for j in seen):
+    seen = [term for term in problem.terms if term.most]
+    if any(term.k[1] for term in seen):
         raise ValueError("a portrait is of a map of one angle; this potential has a wave that "
                          "depends on a second angle")
     if not seen:
         raise ValueError("the potential is zero: every orbit of the map lies on a circle; give "
                          "amplitudes that are not all 0")
-    parts = [[part[j] for j in seen] for part in problem.parts if any(part[j] for j in seen)]
-    return Problem(SymplecticMap([problem.waves[j] for j in seen],
-                                 [problem.amplitude[j] for j in seen], parts))
+    return Problem(SymplecticMap([(*term.k, term.phase) for term in seen],
+                                 [term.p for term in seen],
+                                 list(filter(any, zip(*[term.parts for term in seen])))))
 
 
 def _even(problem):

@@ -128,8 +128,8 @@ def _divided(hints, text):
 
 def wave_lines(problem):
     """The fields of the header that say of which maps it is."""
-    return ["wave: %d %d %s" % wave + "".join(" " + decimal_text(x) for x in numbers)
-            for wave, *numbers in zip(problem.waves, problem.amplitude, *problem.parts)]
+    return ["wave: %d %d %s %s" % (*term.k, term.phase, " ".join(
+        map(decimal_text, (term.p, *term.parts)))) for term in problem.terms]
 
 
 def _problem_lines(problem):

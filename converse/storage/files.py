@@ -29,18 +29,6 @@ def plain(text):
                    c.encode("unicode_escape", "surrogatepass").decode("ascii") for c in text)
 
 
-def verified(value, jobs):
-    """The check.Result of converse-check's code for a value that has save()."""
-    import tempfile
-
-    from .. import check
-
-    with tempfile.TemporaryDirectory() as directory:
-        path = os.path.join(directory, "saved")
-        value.save(path)
-        return check.verify(path, jobs)
-
-
 def check_new(path, resumed=None):
     """ConverseError if a backup would overwrite a file that is neither empty nor `resumed`."""
     if os.path.exists(path) and os.path.getsize(path) and not (
