@@ -126,6 +126,11 @@ class Counts:
     max_NTsteps: int = 0
     linked: int = 0
 
+    @property
+    def decided(self):
+        """How many prisms are leaves, but for linked ones."""
+        return self.proved + self.symmetric + self.undecided
+
     def __add__(self, other):
         """The statistics of both searches together."""
         both = {}

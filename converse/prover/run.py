@@ -29,9 +29,9 @@ from .starts import MAX_PROOF_LEAVES, has_width, plan
 from .workers import Deadline, WorkerPool, check_options, count_workers
 
 LONG = 400                              # points: of a proved prism's orbit
-# Tries, after which it is asked whether thin prisms resist: with waves of one combination of the
-# angles most proofs are finished then.
-MANY_TRIES = 10000
+# Decided prisms, after which it is asked whether thin prisms resist: with waves of one combination
+# of the angles most proofs are finished then.
+MANY_LEAVES = 5000
 # Threads of this process work for this time, and so many times as long as the setting up took,
 # before the work is handed to an executor: each of its workers sets the search up anew.
 ALONE_SECONDS, ALONE_RATIO = 0.1, 10
@@ -221,8 +221,11 @@ class _Run:
                                    % wrong)
         self.search = search
         self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
+        setting_up, left = time.monotonic() - began, MANY_LEAVES - counts.decided
+        if self.may_be_long and left > 0 and not self._look():  # what is asked then is asked there,
+            self.search.work(self.threads, self._look, left)    # whenever this looks
         if self.pool:
-            self._hand_over(task, time.monotonic() - began)
+            self._hand_over(task, setting_up)
         if not self._look():
             self.search.work(self.threads, self._look)
             self._look()
@@ -265,7 +268,7 @@ class _Run:
     def _is_doubtful(self):
         """Is it to be asked now how long orbits may become?"""
         return self.view.needs_long or (
-            self.longest is None and self.may_be_long and self._counts.tries >= MANY_TRIES)
+            self.longest is None and self.may_be_long and self._counts.decided >= MANY_LEAVES)
 
     def _resists(self):
         """Are there thin prisms that no orbit contradicts, over the first x* alone?"""
@@ -274,7 +277,7 @@ class _Run:
 
     def _is_vain(self):
         """Does more work on such a tree prove nothing?  If it cannot be linked it ends then."""
-        return self._resists() and self._counts.tries >= MANY_TRIES and \
+        return self._resists() and self._counts.decided >= MANY_LEAVES and \
             not self.proof.settings.stubborn
 
     def _is_hopeless(self):

@@ -645,7 +645,7 @@ def test_why_a_search_ended_is_a_value(source, options, why, tmp_path):
 def test_a_range_with_circles_is_given_up_within_seconds(monkeypatch, tmp_path):
     """Cuts around the circles would go on for hours.  The end and its reason are saved, and the
     checker knows the field; a stubborn search goes on."""
-    monkeypatch.setattr(run, "MANY_TRIES", 1000)
+    monkeypatch.setattr(run, "MANY_LEAVES", 500)
     path = tmp_path / "a.proof"
     proof = prove(StandardMap(k=("0.5", "1")), backup=path)
     assert proof.ended == "hopeless as seen" and 1000 <= proof.counts.tries < 100_000
@@ -656,6 +656,15 @@ def test_a_range_with_circles_is_given_up_within_seconds(monkeypatch, tmp_path):
     assert again.hopeless and again.restored
     went_on = prove(resume=path, stubborn=True, time_limit=1)
     assert went_on.ended in ("time", "hopeless as seen") and went_on.seconds > proof.seconds
+
+
+@pytest.mark.parametrize("seconds", [0.001, 0.5])
+def test_where_a_search_is_given_up_does_not_depend_on_when_it_is_looked_at(monkeypatch, seconds):
+    monkeypatch.setattr(run, "MANY_LEAVES", 300)
+    monkeypatch.setattr(native, "LOOK_SECONDS", seconds)
+    proof = prove(StandardMap(k=("0.5", "1")), jobs=2)
+    assert proof.hopeless and proof.counts.proved == 300
+    assert proof.tree == prove(resume=proof, jobs=1).tree
 
 
 def test_a_narrower_range_is_advised_where_cuts_are_along_the_parameter(made_up):
