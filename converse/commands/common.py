@@ -14,6 +14,7 @@ from ..prover.settings import LIMIT
 from ..storage import files
 from ..storage.files import ConverseError, NotSaved, WorkersGone, plain
 from ..storage.signals import ENDING, interruptible
+from ..version import __version__
 
 BAD, ENDED_BY = 2, 128                  # exit statuses; the signal's number is added to the second
 REFRESH_SECONDS, LINE_SECONDS = 0.25, 60.0       # between texts of progress on a terminal; of lines
@@ -34,6 +35,7 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **options):
         super().__init__(**{"formatter_class": _Formatter, "allow_abbrev": False, **options})
         self._negative_number_matcher = re.compile(r"-\.?\d")     # -1e-3 and -0.1:0 are values
+        self.add_argument("--version", action="version", version="%(prog)s " + __version__)
 
     def error(self, message):
         raise ConverseError("%s; see %s --help" % (message, self.prog))

@@ -7,7 +7,6 @@ import sys
 
 from ..storage import files
 from ..storage.files import ConverseError
-from ..version import __version__
 from .common import (MAP, SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
                      ending, executor_of, read_problem, say)
 
@@ -59,7 +58,6 @@ def parser():
     p.add_argument("-g", "--graphics", metavar="FILE",
                    help="draw the diagram: SVG, PNG or PDF by name")
     add_worker_options(p, "parts of the range")
-    p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 
 

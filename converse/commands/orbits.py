@@ -9,7 +9,6 @@ import sys
 
 from ..storage import files
 from ..storage.files import ConverseError, plain
-from ..version import __version__
 from .common import SIGNALS, Parser, ProgressLine, check_figure, command, ending, say
 
 COMMAND = "converse-orbits"
@@ -123,7 +122,6 @@ def parser():
     p.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
                    "the states: SVG, PNG or PDF by the name")
     p.add_argument("--no-caption", action="store_true", help="draw no caption")
-    p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 
 

@@ -3,7 +3,6 @@
 import sys
 
 from ..storage.files import ConverseError
-from ..version import __version__
 from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
                      ending, executor_of, read_problem, say, whole_number)
 
@@ -47,7 +46,6 @@ def parser():
         "prove that there is an invariant circle of this rotation number, as converse-tori does, "
         "and draw it; may be given again"))
     add_worker_options(p, "columns")
-    p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 
 

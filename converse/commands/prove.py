@@ -11,7 +11,6 @@ from dataclasses import fields
 from ..prover.settings import AS_PRINTED, REGION, SETTINGS, THEOREM, UNDECIDED, Settings
 from ..storage import files
 from ..storage.files import ConverseError
-from ..version import __version__
 from .common import (MAP, REFRESH_SECONDS, SIGNALS, TOGETHER, Parser, ProgressLine,
                      add_worker_options, check_figure, command, ending, executor_of, number,
                      read_problem, say, tell, whole_number)
@@ -84,7 +83,6 @@ def parser():
     add_worker_options(p, "parts")
     p.add_argument("--list-inputs", action=ListInputs, nargs=0,
                    help="print the paths of the input files that come with the program, and exit")
-    p.add_argument("--version", action="version", version="converse " + __version__)
     return p
 
 

@@ -10,7 +10,6 @@ import time
 
 from ..storage import files
 from ..storage.files import ConverseError, plain
-from ..version import __version__
 from .common import (MAP, SIGNALS, TOGETHER, Parser, ProgressLine, check_figure, command, ending,
                      number, read_problem, say, seconds, tell, whole_number)
 
@@ -75,7 +74,6 @@ def parser():
                    help="begin no step after this time")
     p.add_argument("--memory", type=_positive, metavar="GB", help="the most memory that "
                    "refining the torus takes, in GB (default: three quarters of the free memory)")
-    p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 
 
