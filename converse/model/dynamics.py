@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any, Optional, Tuple
 
-from .exact import integer, is_integer
+from .exact import whole_number
 
 if TYPE_CHECKING:
     import numpy as np
@@ -177,6 +177,4 @@ def jacobians(bend: "np.ndarray") -> "np.ndarray":
 
 
 def _steps(steps):
-    if not is_integer(steps) or abs(steps) >= 2 ** 31:
-        raise ValueError("steps: a whole number below 2^31 in size, not %.200r" % (steps,))
-    return integer(steps)
+    return whole_number(steps, "steps", 1 - 2 ** 31, 2 ** 31 - 1)

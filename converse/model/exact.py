@@ -94,6 +94,15 @@ def is_integer(x: Any) -> bool:
     return True
 
 
+def whole_number(value: Any, name: str, least: int, most: float = math.inf) -> int:
+    """The integer that an argument is; ValueError: it is none, or is not from `least` to `most`."""
+    if is_integer(value) and least <= integer(value) <= most:
+        return integer(value)
+    raise ValueError("%s must be a whole number%s, not %.200r" % (
+        name, ", %d or more" % least if most == math.inf else " from %d to %d" % (least, most),
+        value))
+
+
 def _parsed(text):
     if ratio := RATIO.fullmatch(text):      # Decimals have no limit of digits, as int() has
         return _in_range(Fraction(*(int(Decimal(part)) for part in ratio.groups())))

@@ -65,16 +65,6 @@ def finite(what, values):
     raise ValueError("%s: finite numbers, as a list, not %.200r" % (what, values))
 
 
-def whole(what, value, least, most=2 ** 31 - 1):
-    """Returns the value as an int.  ValueError: it is not a whole number in this range."""
-    try:
-        if int(value) == value and least <= value <= most:
-            return int(value)
-    except (TypeError, ValueError, OverflowError):
-        pass
-    raise ValueError("%s: a whole number from %d to %d, not %.200r" % (what, least, most, value))
-
-
 def points(x, n):
     """x as a C-contiguous array (m, 2) of floats, its idle coordinate zero; ValueError if it
     has another shape."""

@@ -14,13 +14,13 @@ import numpy as np
 from flint import arb, arb_mat
 
 from ..model.balls import precision
-from ..model.exact import Interval, rounded
+from ..model.exact import Interval, rounded, whole_number
 from .enclosure import Enclosure, ball, lower, square, upper
 from .exponents import growth
 from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
                      MAX_STIFFNESS, SHOWN_PLACES)
 from .minimax import Pair, gap_of
-from .potential import told, whole
+from .potential import told
 from .proved import (NotProved, ProvedOrbit, TooFewPlaces, _eps, distance_words, grown, in_units,
                      prove)
 
@@ -99,7 +99,7 @@ def prove_pair(pair, digits=None, progress=None):
     if pair.minimax.label == "not stationary":
         raise NotProved("the pass is not stationary, its gradient is %.1e" % pair.minimax._shadow)
     most_digits = MAX_PLACES - 2 * GUARD_PLACES
-    digits = DEFAULT_DIGITS if digits is None else whole("digits", digits, 1, most_digits)
+    digits = DEFAULT_DIGITS if digits is None else whole_number(digits, "digits", 1, most_digits)
     minimum, reason = prove(pair.minimum, digits, progress=progress), ""
     first = digits + 2 * GUARD_PLACES
     last = min(first + 2 * MAX_MORE_PLACES, MAX_PLACES + 1)

@@ -10,10 +10,11 @@ import numpy as np
 
 from .._native import ffi, lib
 from ..model.dynamics import jacobians
+from ..model.exact import whole_number
 from ..storage.files import ConverseError
 from .limits import (EIGENVALUE_ROUNDING, EIGENVALUE_STEP, MAX_DISPLACEMENT, MAX_PIVOTS, MAX_Q,
                      MAX_SHADOW, NULL_EIGENVALUE, SHADOW_REACH)
-from .potential import Potential, address, done, finite, known, whole
+from .potential import Potential, address, done, finite, known
 from .stability import Monodromy, beyond, log_excesses, log_multipliers, log_weak_excess, product
 
 if TYPE_CHECKING:
@@ -391,7 +392,7 @@ class PeriodicOrbit:
         if self.potential.n != 1:
             raise ValueError("gaps are those of an orbit on a circle; with two angles nothing lies "
                              "between two points")
-        count = self.q if count is None else whole("count", count, 0)
+        count = self.q if count is None else whole_number(count, "count", 0, 2 ** 31 - 1)
         x = self.x[:, 0]
         i = np.argsort(x, kind="stable")
         j = np.roll(i, -1)
@@ -494,7 +495,7 @@ class PeriodicOrbit:
         n : int
             How often; n q is at most MAX_Q.
         """
-        n = whole("how often an orbit is run through", n, 1, MAX_Q // self.q)
+        n = whole_number(n, "how often an orbit is run through", 1, MAX_Q // self.q)
         return replace(self, p=tuple(n * i for i in self.p), q=n * self.q,
                        u=np.tile(self.u, (n, 1)))
 
@@ -517,7 +518,8 @@ class PeriodicOrbit:
             The steps do not reach a minimum.
         """
         eps, tol = finite("eps and tol", [self.eps if eps is None else eps, tol])
-        code, how, u = descended(self, eps, tol, whole("max_steps", max_steps, 0))
+        max_steps = whole_number(max_steps, "max_steps", 0, 2 ** 31 - 1)
+        code, how, u = descended(self, eps, tol, max_steps)
         if code != lib.CV_OK:
             raise ConverseError(
                 "no orbit of type %s found at eps %r: the gradient is still %.1e after %d steps"

@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
-from ..model.exact import decimal_text, integer, is_integer, pi_bounds, rounded, rounded_text
+from ..model.exact import decimal_text, pi_bounds, rounded, rounded_text, whole_number
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..model.region import MARGIN, PLACES, reversal_centre
@@ -103,10 +103,8 @@ class Portrait(Kept):
             The numbers or the map do not suit.
         """
         problem = _of_circle(Problem.of(source))
-        for name, value, most in (("columns", columns, MOST_COLUMNS), ("depth", depth, 1000)):
-            if not is_integer(value) or not 1 <= value <= most:
-                raise ValueError("%s is a whole number from 1 to %d, not %r" % (name, most, value))
-        columns, depth = integer(columns), integer(depth)
+        columns = whole_number(columns, "columns", 1, MOST_COLUMNS)
+        depth = whole_number(depth, "depth", 1, 1000)
         even = _even(problem)
         count = -(-columns // 2) if even is not None else columns
         if not strips:

@@ -1,7 +1,5 @@
 """The settings of a search, which problems they are for, and what a search can conclude."""
 
-import math
-import operator
 from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, Dict, Optional
 
@@ -15,20 +13,6 @@ LIMIT = 100000                                      # of the depth and of the di
 HOPELESS, LENGTH, DEPTH, DOUBLES, TIME = (
     "hopeless as seen", "limit of length", "limit of depth", "limit of doubles", "time")
 THEOREM, REGION, UNDECIDED, AS_PRINTED = "theorem", "region", "undecided", "as printed"
-
-
-def whole_number(value: Any, name: str, least: int, most: float = math.inf) -> int:
-    """The integer that an argument is, of Python's or numpy's; ValueError: it is none, or is not
-    from `least` to `most`."""
-    try:
-        number = least - 1 if isinstance(value, bool) else operator.index(value)
-    except TypeError:
-        number = least - 1
-    if not least <= number <= most:
-        raise ValueError("%s must be a whole number%s, not %r" % (
-            name, ", %d or more" % least if most == math.inf else " from %d to %d" % (least, most),
-            value))
-    return number
 
 
 def _setting(default, flags, text, **how):
@@ -82,6 +66,8 @@ class Settings:
         only="thesis")
 
     def __post_init__(self):
+        from ..model.exact import whole_number  # late, for the parser needs none of it
+
         if not isinstance(self.method, str) or self.method not in METHODS:
             raise ValueError("the method is one of %s, not %r" % (", ".join(METHODS), self.method))
         if self.depth is None:

@@ -13,10 +13,10 @@ import warnings
 from dataclasses import dataclass, replace
 from typing import Any, Callable
 
+from ..model.exact import whole_number
 from ..storage.files import ConverseError, WorkersGone
 from ..storage.signals import Resource, postponed
 from ..version import __version__
-from .settings import whole_number
 
 LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 ATTEMPTS = 4                        # at a task whose workers die

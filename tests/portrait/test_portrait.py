@@ -327,9 +327,9 @@ def test_lines_of_two_harmonics(tmp_path):
 
 
 @pytest.mark.parametrize("change, why", [
-    ({"columns": 0}, "columns is a whole number from 1"),
+    ({"columns": 0}, "columns must be a whole number from 1"),
     ({"columns": 4}, "give at least 8"),
-    ({"depth": 0}, "depth is a whole number from 1"),
+    ({"depth": 0}, "depth must be a whole number from 1"),
 ])
 def test_bad_numbers(change, why):
     with pytest.raises(ValueError, match=why):
