@@ -127,6 +127,7 @@ int cv_pending(cv_search *s, cv_cell *cells);
 typedef struct {
     cv_counts counts;
     double examined; /* the share of the root, by volume, in leaves; it never falls */
+    double points; /* of the orbits of all tries since cv_restart that count in the tree */
     int finished; /* are all prisms decided, or does an undecided one end the search? */
     int needs_long; /* see cv_search_new; the tree so far does not depend on `longest` */
     size_t length;

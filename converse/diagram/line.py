@@ -3,8 +3,8 @@
 Rounds that look for tori (some.py) and rounds that exclude them (none.py) change off: the side that
 has cost less is next.  A cell of the line that is not excluded is halved.  If its middle was
 excluded, only x* has to change; if not, there may be a torus, and with each halving the tries may
-cost twice the points.  The tasks of a round are chosen before any of them is done, so the result
-does not depend on how many are done at a time.
+cost twice the points.  Cells next to excluded ones come first.  The tasks of a round are chosen
+before any of them is done, so the result does not depend on how many are done at a time.
 """
 
 from fractions import Fraction
@@ -15,10 +15,11 @@ from .value import Diagram
 
 CELLS = 24                              # of the range, at first
 FINEST = 1 << 14                        # A cell with a torus is left out if so many fill the range.
-ROUND = 8                               # cells of a round
-FIRST_POINTS, WHOLE_POINTS = 20000, 1 << 17     # of the first try at a cell; at the whole range
-DOUBT = Fraction(1, 2)                  # the weight of a cell whose middle was not excluded
-SEEN = 16                               # A cell in which a torus is seen is so much less urgent.
+ROUND, LEAST = 8, Fraction(1, 16)       # cells of a round, none of which is much less urgent
+FIRST_POINTS = {1: 1 << 15, 2: 1 << 18}     # of the first try at a cell, by the number of angles
+DOUBT = Fraction(1, 2)                  # of its weight, where the middle of a cell is not excluded
+SEEN, EDGE = 16, 256    # A cell with a torus that is seen is so much less urgent; a neighbour of
+                        # excluded values is so much more urgent.
 Hint = Tuple[Fraction, none.Point]      # a value, and the x* over which it is excluded
 
 
@@ -46,7 +47,8 @@ class Cell(NamedTuple):
 
     def halves(self, doubtful: bool) -> "List[Cell]":
         """Its halves, and what is to be done for them."""
-        points, weight = (2 * self.points, DOUBT) if doubtful else (self.points, Fraction(1))
+        points, weight = (2 * self.points, DOUBT * self.weight) if doubtful else (
+            self.points, Fraction(1))
         return [Cell(low, high, points, weight) for low, high
                 in ((self.low, self.middle), (self.middle, self.high))]
 
@@ -92,6 +94,7 @@ class _Line:
 
     def __init__(self, diagram):
         self.diagram = diagram
+        self.first_points = FIRST_POINTS[diagram.family.dimension]
         self.grain = (diagram.ranges[0][1] - diagram.ranges[0][0]) / FINEST
         self.cells: List[Cell] = []
         self.hints: List[Hint] = []
@@ -106,8 +109,8 @@ class _Line:
         self.spent = [int(x) for words in known["spent"] for x in words] or [0, 0]
         self.tori = some.Runs(diagram, known["run"])
         if not diagram.search and diagram.open:
-            self.cells = [Cell(diagram.open[0][0], diagram.open[-1][1],
-                               WHOLE_POINTS, Fraction(0))]
+            self.cells = [Cell(diagram.open[0][0], diagram.open[-1][1], self.first_points,
+                               Fraction(0))]
 
     def lines(self) -> List[str]:
         """The state, for the file."""
@@ -146,17 +149,21 @@ class _Line:
                     self._divided(task)
 
     def _cells(self):
-        """The cells that are tried next, the widest first; tori that are seen make a cell as narrow
-        as a sixteenth of it."""
+        """The cells that are tried next, the widest first; one that touches a part without tori
+        counts as if it were wider, and one in which a torus is seen as if it were narrower."""
+        ends = {end for each in self.diagram.none for end in each}
+
         def rank(cell):
+            urgency = cell.weight * (EDGE if cell.low in ends or cell.high in ends else 1)
             seen = self.tori.seen_in(cell.low, cell.high)
-            return (cell.low - cell.high) * cell.weight / (SEEN if seen else 1), cell.low
+            return (cell.low - cell.high) * urgency / (SEEN if seen else 1), cell.low
 
         tori = [(each.low, each.high) for each in self.diagram.tori]
         todo, chosen = sorted(self.cells, key=rank), []     # type: List[Cell], List[Cell]
-        while todo and len(chosen) < ROUND:
+        while todo and len(chosen) < ROUND and (
+                not chosen or rank(todo[0])[0] <= LEAST * rank(chosen[0])[0]):
             cell = todo.pop(0)
-            inside = [ends for ends in tori if ends[0] <= cell.high and cell.low <= ends[1]]
+            inside = [each for each in tori if each[0] <= cell.high and cell.low <= each[1]]
             if not inside:
                 chosen.append(cell)
             elif not any(low <= cell.low and cell.high <= high for low, high in inside):
@@ -169,7 +176,7 @@ class _Line:
         """The parts of the whole range, with ends of few decimals."""
         ends = [cell.low, *(some.nice(cell.low + (cell.high - cell.low) * i / CELLS, self.grain)
                             for i in range(1, CELLS)), cell.high]
-        return [Cell(*pair, FIRST_POINTS, Fraction(1)) for pair in zip(ends, ends[1:])]
+        return [Cell(*pair, self.first_points, Fraction(1)) for pair in zip(ends, ends[1:])]
 
     def _near(self, cell):
         """The x* over which the nearest values are excluded."""

@@ -3,8 +3,10 @@
 Near the last torus only some x* exclude all successors, and which they are changes with the
 parameters within a percent.  So a cell is first tried at its middle.  Over each x* of a coarse
 scan of the torus a tree of few cuts is grown; the x* that leaves the fewest prisms is improved by
-steps; and a cell is given the x* that excludes its middle at the least cost.  All costs are points
-of orbits, so the outcome depends on the cell and on the x* that are suggested, not on the machine.
+steps; and a cell is given the x* that excludes its middle at the least cost.  A scan costs as much
+as many tries, so first come the x* of neighbours, and those that steps from these lead to.  All
+costs are points of orbits, so the outcome depends on the cell and on the x* that are suggested, not
+on the machine.
 """
 
 import itertools
@@ -23,13 +25,14 @@ from ..prover.settings import Settings
 
 Point = Tuple[str, str]                 # x*, as the prover takes it
 
-SCAN, SCAN_POINTS = {1: 62, 2: 8}, 400  # points of a scan in a turn; the most of an orbit in it
+SCAN = {1: 62, 2: 8}                    # x* of a scan in a turn
 SCAN_CUTS, STEP_CUTS = {1: 8, 2: 12}, {1: 14, 2: 18}    # of the trees that compare x*
+SCAN_LENGTH, SCAN_POINTS = 400, 20000   # the most points of their orbits; of a tree
 LEAST_STEP = {1: 0.003, 2: 0.02}        # radians, by which x* is moved
 BASINS, CHOICES = 3, 6                  # x* that are improved; that are then tried to the end
-HINTS = 4                               # x* of neighbours that are tried first
+HINTS = 3                               # x* of neighbours that are tried first
 DEPTH = 60                              # cuts of a proof
-RANGE_FACTOR, RANGE_TRIES = 16, 2       # points of a range, by those of its middle; x* for it
+RANGE_FACTOR, RANGE_TRIES = 6, 2        # points of a range, by those of its middle; x* for it
 TREE_POINTS = 1000                      # A tree costs as much as so many more, to set it up.
 SCALE = 10 ** 4                         # x* has four decimals
 
@@ -74,16 +77,18 @@ def exclude(family: SymplecticMap, middle: SymplecticMap, hints: Sequence[Point]
         None if it was stopped.
     """
     search = _Search(Problem.of(middle), points, stop)
-    problem, best = Problem.of(family), None
-    for choose in search.hinted, search.scanned:
-        choices = choose(hints)
-        best = min([*choices, *filter(None, [best])], default=None)
+    problem, choices = Problem.of(family), []   # type: Problem, List[Tuple[int, Point]]
+    for xstars in search.candidates(hints[:HINTS]):
+        choices = search.cheapest(xstars)
         for cost, xstar in choices[:RANGE_TRIES]:
-            grown = search.proof(problem, xstar, max(points, RANGE_FACTOR * cost))
+            grown = search.proof(problem, xstar, RANGE_FACTOR * max(points, cost))
             if grown:
                 proof = prove(resume=grown, jobs=1)     # Its tree is whole.
                 return Outcome(search.points, proof if proof.no_tori else None, xstar)
-    return None if search.stopped else Outcome(search.points, None, best and best[1])
+        if choices:                     # A half of the cell costs less than other x*.
+            break
+    return None if search.stopped else Outcome(search.points, None,
+                                               choices[0][1] if choices else None)
 
 
 class _Search:
@@ -104,7 +109,7 @@ class _Search:
             native.Task(before.problem, before.settings, before.xstar, longest), points=points,
             look=self.stop)
         self.stopped = self.stopped or grown is None or self.stop()
-        self.spent = sum(grown.steps) if grown else 0
+        self.spent = int(grown.points) if grown else 0
         self.points += self.spent + TREE_POINTS
         return before, grown
 
@@ -117,26 +122,28 @@ class _Search:
 
     def _left(self, place, cuts):
         """How much a small tree over a place leaves, and what it costs."""
-        _, grown = self._grown(self.problem, self._point(place), cuts, self.most, True, SCAN_POINTS)
+        _, grown = self._grown(self.problem, self._point(place), cuts, SCAN_POINTS, True,
+                               SCAN_LENGTH)
         if grown is None:
             return math.inf, 0
         return math.inf if grown.cells else grown.counts.undecided, self.spent
 
-    def hinted(self, hints) -> List[Tuple[int, Point]]:
-        """The x* of the nearest hints over which the map is excluded, with the points that this
-        takes, the fewest first."""
-        return self._cheapest(hints[:HINTS], self.most // HINTS)
+    def candidates(self, hints):
+        """Yields lists of x*: those of neighbours, those that steps from these lead to, and those
+        that a scan leads to."""
+        yield hints
+        near = [self._place(tuple(map(Fraction, hint))) for hint in hints]
+        yield [x for x in self._improved(near, 8 * LEAST_STEP[self.axes]) if x not in hints]
+        yield self._improved(self._basins(), math.pi / SCAN[self.axes])
 
-    def scanned(self, hints) -> List[Tuple[int, Point]]:
-        """The same of the x* that a scan finds."""
-        return self._cheapest([x for x in self._improved() if x not in hints[:HINTS]], self.most)
-
-    def _cheapest(self, candidates, points):
+    def cheapest(self, candidates) -> List[Tuple[int, Point]]:
+        """Those of these x* over which the map is excluded, with the points that this takes, the
+        fewest first."""
         return sorted((self.spent, xstar) for xstar in candidates
-                      if self.proof(self.problem, xstar, points))
+                      if self.proof(self.problem, xstar, self.most))
 
-    def _improved(self) -> List[Point]:
-        """The most promising x*, of which BASINS of a scan are improved by ever smaller steps."""
+    def _improved(self, places, first_step) -> List[Point]:
+        """The most promising x*, from places that are improved by ever smaller steps."""
         axes, known = self.axes, {}
 
         def left(place):
@@ -144,8 +151,8 @@ class _Search:
                 known[place] = self._left(place, STEP_CUTS[axes])
             return known[place]
 
-        for place in self._basins():
-            step = math.pi / SCAN[axes]
+        for place in places:
+            step = first_step
             while step > LEAST_STEP[axes] and not self.stopped:
                 move = round(step * SCALE)
                 near = [tuple(x + move * way for x, way in zip(place, ways))
@@ -163,7 +170,6 @@ class _Search:
                    for at in itertools.product(range(count), repeat=axes)]
         scores = {place: self._left(place, SCAN_CUTS[axes]) for place in dict.fromkeys(places)}
         return sorted(scores, key=scores.__getitem__)[:BASINS]
-
 
     def _point(self, place) -> Point:
         """x* at a place, which has one coordinate where V depends on q.y alone."""

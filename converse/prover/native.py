@@ -172,7 +172,8 @@ class View:
     depend on the workers.
     examined: the share of parameters and angles that lies in leaves.
     finished: is every prism decided, or one undecided in a search that is not stubborn?
-    needs_long: did it end before a prism that may need a longer orbit than the task allows?"""
+    needs_long: did it end before a prism that may need a longer orbit than the task allows?
+    points: how many the orbits of all its tries have, where the core knows all of them."""
 
     text: str
     steps: Any
@@ -182,19 +183,21 @@ class View:
     examined: float
     finished: bool
     needs_long: bool
+    points: float = 0.0
 
 
 @dataclass
 class Grown:
     """What cells became: the text, the lengths of its nodes' orbits, its statistics, and the cells
     yet to be decided that follow it, each (index, cuts, hint): see cv_cell in csrc/converse.h.
-    needs_long: as of View."""
+    needs_long, points: as of View."""
 
     text: str
     steps: List[int]
     counts: Counts
     cells: List[tuple]
     needs_long: bool
+    points: float
 
 
 def native_text(text, owners):
@@ -291,7 +294,8 @@ class Search:
             view.length else ""
         counts = _counts(view.counts)
         return View(text, _Steps(view), [view.steps[at.start()] for at in UNTRIED.finditer(text)],
-                    counts, counts, view.examined, bool(view.finished), bool(view.needs_long))
+                    counts, counts, view.examined, bool(view.finished), bool(view.needs_long),
+                    view.points)
 
     def cells(self):
         """The cells yet to be decided, in preorder."""
@@ -310,7 +314,8 @@ class Search:
         """What the cells have become."""
         view, cells = self.view(0), self.cells()
         size = len(view.text) - len(cells)
-        return Grown(view.text[:size], view.steps[:size], view.counts, cells, view.needs_long)
+        return Grown(view.text[:size], view.steps[:size], view.counts, cells, view.needs_long,
+                     view.points)
 
 
 class _Steps:

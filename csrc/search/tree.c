@@ -411,6 +411,7 @@ int cv_look(cv_search *s, size_t from, cv_view *view)
     pthread_mutex_lock(&s->lock);
     *view = (cv_view){ .counts = s->counts,
                        .examined = s->examined,
+                       .points = s->points,
                        .length = s->length,
                        .finished = s->status == CV_OK,
                        .needs_long = s->needs_long };

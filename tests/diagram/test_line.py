@@ -33,6 +33,12 @@ def test_the_choice_of_x_is_the_same_each_time():
     assert excluded("0.3", "0.301")[::2] == excluded("0.3", "0.301")[::2]
 
 
+def test_a_range_over_whose_middle_an_x_is_known_is_halved_without_a_scan():
+    found = excluded("0.6", "0.66", [("1.8749", "0")])
+    assert found.proof is None and found.xstar == ("1.8749", "0")
+    assert found.points < 400000                        # a scan alone takes more
+
+
 @pytest.mark.slow
 def test_no_x_excludes_a_circle():
     assert excluded("0.42", "0.42")[1:] == (None, None)         # a circle is proved there
@@ -87,6 +93,14 @@ def test_a_diagram_does_not_depend_on_the_workers(tmp_path):
     first, second = (diagram.explore(cosines(K1=("0.28", "0.7")), path=tmp_path / name, budget=2,
                                      jobs=jobs) for name, jobs in (("1.map", 1), ("2.map", 2)))
     assert (first.members, first.search) == (second.members, second.search)
+
+
+def test_a_cell_next_to_excluded_values_comes_first(monkeypatch):
+    work = line._Line(Diagram.of(cosines(K1=("0.3", "0.6"))))
+    work.cells = [line.Cell(F(low), F(high), 1, F(1)) for low, high in (
+        ("0.3", "0.4"), ("0.4", "0.5"), ("0.5", "0.501"), ("0.501", "0.5011"))]
+    monkeypatch.setattr(Diagram, "none", [(F("0.5011"), F("0.6"))])
+    assert [cell.low for cell in work._cells()] == [F("0.3"), F("0.4"), F("0.501")]
 
 
 def test_a_cell_with_a_torus_is_halved_and_not_tried(monkeypatch):
