@@ -81,7 +81,8 @@ def on_line(low, high=None, together=False):
 
 
 def _problem(low, high, together=False):
-    return Problem(MuldoonMap((low, high), (low, high), (2 * low, 2 * high), together=together))
+    made = Problem(MuldoonMap((low, high), (low, high), (2 * low, 2 * high)))
+    return made.tied() if together else made
 
 
 def timed(problem, **options):
@@ -196,8 +197,9 @@ def wall(quick):
         for epsilon in values:
             if quick and float(epsilon) < QUICK[method]:
                 break
-            proof = converse.prove(on_line(epsilon, together=method == "loewner"), digits=20,
-                                   method=method, time_limit=WALL_SECONDS)
+            proof = converse.prove(on_line(epsilon, together=method == "loewner"),
+                                   digits=20 if method == "thesis" else None, method=method,
+                                   time_limit=WALL_SECONDS)
             counts = proof.counts
             yield method, epsilon, counts.proved, counts.most_cuts, _yes(proof.no_tori)
             if not proof.no_tori:

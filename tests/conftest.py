@@ -102,7 +102,8 @@ def around(centre, half, comments=(), together=False):
     """The problem of five centres and half-widths: of a, b, c, v0 and v1."""
     ranges = [(Fraction(c) - Fraction(h), Fraction(c) + Fraction(h))
               for c, h in zip(centre, half)]
-    return Problem(MuldoonMap(*ranges[:3], together=together), *ranges[3:], comments)
+    made = Problem(MuldoonMap(*ranges[:3]), *ranges[3:], comments)
+    return made.tied() if together else made
 
 
 @pytest.fixture(scope="session")

@@ -305,7 +305,7 @@ def FroeschleMap(k: Union[Range, Number], b: Union[Range, Number]) -> Symplectic
 
 def MuldoonMap(a: Union[Range, Number, None] = None, b: Union[Range, Number, None] = None,
                c: Union[Range, Number, None] = None, *,
-               epsilon: Union[Range, Number, None] = None, together: bool = False) -> SymplecticMap:
+               epsilon: Union[Range, Number, None] = None) -> SymplecticMap:
     """The map of Muldoon's thesis, V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1).
 
     Parameters
@@ -314,25 +314,20 @@ def MuldoonMap(a: Union[Range, Number, None] = None, b: Union[Range, Number, Non
         Numbers or ranges (low, high), exact.
     epsilon
         In the place of a, b and c: a = b = c/2 = 11.21436 epsilon.
-    together
-        The three ranges are one parameter: the segment from all lower to all upper ends.
 
     Raises
     ------
     TypeError, ValueError
         An argument is not as described, or epsilon is given beside a, b or c.
     """
-    if not isinstance(together, bool):
-        raise TypeError("together must be True or False, not %r" % (together,))
     if epsilon is not None:
         if (a, b, c) != (None,) * 3:
             raise ValueError("a map has a, b and c, or epsilon; give the ones or the other")
         return SymplecticMap(THESIS, [0] * 3, [[LINE, LINE, 2 * LINE]], [epsilon], ["epsilon"],
                              "Muldoon map")
     ranges = [ends_of(name, ends) for name, ends in zip("abc", (a, b, c))]
-    made = SymplecticMap(THESIS, [0] * 3, [[1, 0, 0], [0, 1, 0], [0, 0, 1]], ranges,
-                         tuple("abc"), "Muldoon map")
-    return made.tied() if together else made
+    return SymplecticMap(THESIS, [0] * 3, [[1, 0, 0], [0, 1, 0], [0, 0, 1]], ranges, tuple("abc"),
+                         "Muldoon map")
 
 
 def FourierMap(harmonics: Mapping[Any, Amplitude], *, name: str = "",

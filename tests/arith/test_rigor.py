@@ -181,8 +181,8 @@ shim.fail_after.argtypes = [ctypes.c_long] * 2
 shim.left_here.restype = ctypes.c_long
 keep = []
 ends = "0.30975", "0.31225"
-problems = [native_problem(converse.Problem(converse.MuldoonMap(
-    ends, ends, ("0.6195", "0.6245"), together=together)), keep) for together in (False, True)]
+made = converse.Problem(converse.MuldoonMap(ends, ends, ("0.6195", "0.6245")))
+problems = [native_problem(each, keep) for each in (made, made.tied())]
 handle = ffi.new("cv_search **")
 assert lib.cv_search_new(handle, problems[0], ffi.NULL, 0, 0, 30, 0, 0, 0) == lib.CV_EARGUMENT
 def new(n=-1, dp=35, method=0, depth=30):

@@ -1019,7 +1019,7 @@ def test_not_at_once_by_a_rounding():
     """a and B stay below 4/3 and 10/3; but centre and half-width as doubles add up to more."""
     centre, half = Fraction("0.636378608205740996"), Fraction("0.696954725127592337")
     assert centre + half < Fraction(4, 3) < Fraction(float(centre) + float(half))
-    problem = Problem(MuldoonMap((centre - half, centre + half), 0, 0, together=True))
+    problem = Problem(MuldoonMap((centre - half, centre + half), 0, 0).tied())
     assert not prove(problem, method="loewner", depth=0).at_once
 
 

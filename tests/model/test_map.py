@@ -17,7 +17,7 @@ def test_one_family_is_one_value():
     assert thesis == FourierMap({(1, 0): ("0.3", "0.4"), (0, 1): "0.2", (1, 1): ("0.5", "0.7")})
     assert hash(thesis) == hash(SymplecticMap(THESIS, ["0.35", "0.2", "0.6"],
                                               [["0.05", 0, 0], [0, 0, "0.1"]]))
-    assert thesis != MuldoonMap(("0.3", "0.4"), "0.2", ("0.5", "0.7"), together=True)
+    assert thesis != MuldoonMap(("0.3", "0.4"), "0.2", ("0.5", "0.7")).tied()
     assert StandardMap("0.9") == FourierMap({(1, "-1/2"): "0.9"}) == FourierMap(
         {(1, "3/2"): {"k": 1}}, k=Fraction(9, 10)) != StandardMap("0.90000000001")
     assert MuldoonMap(epsilon="0.01") == MuldoonMap(LINE / 100, LINE / 100, LINE / 50)

@@ -21,8 +21,8 @@ STAR = "0.858028", "0.858028"
 
 def line(low, high=None, **ranges):
     low, high = Fraction(low) * LINE, Fraction(high or low) * LINE
-    return Problem(MuldoonMap((low, high), (low, high), (2 * low, 2 * high), together=low != high),
-                   **ranges)
+    made = MuldoonMap((low, high), (low, high), (2 * low, 2 * high))
+    return Problem(made.tied() if low != high else made, **ranges)
 
 
 def draw(rng):

@@ -22,7 +22,7 @@ REGION = (Fraction("0.6807"), Fraction("0.6851")), (Fraction(0), Fraction("0.006
 
 def line(low, high=None, axes=(1, 1, 1, -1)):
     ends = LINE * Fraction(low), LINE * Fraction(high or low)
-    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends), together=True), axes=axes)
+    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends)).tied(), axes=axes)
 
 
 def grown(problem, depth=120, stubborn=False):

@@ -35,7 +35,7 @@ DIAGONAL = 1, 1, 1, -1
 
 def line(low, high=None):
     ends = LINE * Fraction(low), LINE * Fraction(high or low)
-    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends), together=True))
+    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends)).tied())
 
 
 def make_links_easy(monkeypatch):

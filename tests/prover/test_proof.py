@@ -581,7 +581,7 @@ def test_nothing_is_at_once_that_is_not_odd(made_up, tmp_path):
 
 
 def test_the_method_of_1989_takes_ranges_only():
-    for problem, words in ((Problem(MuldoonMap(1, 1, 1, together=True)), "move together"),
+    for problem, words in ((Problem(MuldoonMap(1, 1, 1).tied()), "move together"),
                            (Problem(SymplecticMap([(1, 0)], [1])), "method loewner")):
         with pytest.raises(ValueError, match=words):
             prove(problem, method="thesis")

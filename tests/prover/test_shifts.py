@@ -27,7 +27,7 @@ SHIFTS = (Fraction("0.01"), Fraction("-0.02")),
 
 def line(low, high):
     ends = LINE * Fraction(low), LINE * Fraction(high)
-    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends), together=True),
+    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends)).tied(),
                    axes=(1, 1, 1, -1))
 
 
