@@ -180,7 +180,8 @@ let counts = ["depth"; "cuts"; "proved"; "symmetric"; "linked"; "undecided"; "mo
 let ignored = ["program"; "method"; "digits"; "stubborn"; "quick_tries"; "tries"; "Rtries";
                "HermSuccess"; "LLSuccess"; "ll_used"; "reasons"; "max_steps"; "max_NTsteps"; "B";
                "pending"]
-let optional = ["T"; "Tr-"; "Tr+"; "lambda-min"; "lambda-max"; "seconds"; "hopeless"; "parameter"; "comment"]
+let optional = ["T"; "Tr-"; "Tr+"; "lambda-min"; "lambda-max"; "seconds"; "hopeless";
+                "long orbits"; "parameter"; "comment"]
 let known = ["v0"; "v1"; "kind"; "xstar"; "at once"; "wave"; "frame"; "alone"; "odd about"]
             @ counts @ ignored
 

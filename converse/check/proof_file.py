@@ -14,7 +14,7 @@ COUNTS = ("depth", "cuts", "proved", "symmetric", "linked", "undecided", "most_c
 IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries", "reasons",
            "HermSuccess", "LLSuccess", "ll_used", "max_steps", "max_NTsteps", "pending")
 OPTIONAL = {"xstar", "B", "T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "hopeless",
-            "parameter", "comment"}
+            "long orbits", "parameter", "comment"}
 FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "at once", "wave", "frame", "alone", "odd about"}
 
 

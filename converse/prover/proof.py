@@ -83,6 +83,9 @@ class Proof(Kept):
     hopeless
         Whether the search ended because orbits were seen that seem to minimize: there is probably a
         torus, and neither time nor depth would help.
+    longest
+        The most points of an orbit, 0 for as many as the core can follow; None: whether orbits of
+        more than native.ORDINARY points may prove more was not asked.
     restored
         How many leaves were read from a file; links may have taken the place of some.
     sha256
@@ -99,6 +102,7 @@ class Proof(Kept):
     version: str = __version__
     at_once: bool = False
     hopeless: bool = False
+    longest: Optional[int] = field(default=None, compare=False)
     restored: int = field(default=0, compare=False)
     sha256: str = field(default="", compare=False)
 

@@ -8,7 +8,7 @@ from ..model.map import from_patch
 from ..model.problem import NAMES, Problem
 from ..storage.kept import program_of, sealed
 from . import tree
-from .native import CONSTANTS, Counts
+from .native import CONSTANTS, ORDINARY, Counts
 from .proof import Proof, Tree
 from .settings import FILED, Settings
 
@@ -34,6 +34,8 @@ def text_of(proof):
     lines += ["at once: " + at_once]
     lines += [] if proof.all_decided else ["seconds: %.2f" % proof.seconds]
     lines += ["hopeless: yes"] if proof.hopeless else []
+    if proof.longest is not None and not proof.all_decided:
+        lines += ["long orbits: " + _yes(not proof.longest)]
     pending, before = (), 0
     for each in proof.trees:            # a hint that is missing is 0
         pending += (0,) * (before - len(pending)) + each.pending
@@ -99,6 +101,7 @@ def proof_of(claim):
     return Proof(tuple(grown), settings, Counts(**counts), constants,
                  float(header.get("seconds", 0)), program_of(header), claim.at_once != "no",
                  header.get("hopeless") == "yes",
+                 {"yes": 0, "no": ORDINARY}.get(header.get("long orbits")),
                  sum(each.text.count("P") + each.text.count("S") for each in grown), claim.sha256)
 
 

@@ -171,7 +171,7 @@ class _Run:
         self.tried = set()                      # trees for which others were looked for
         # The most points of an orbit in all trees.  None: that is asked when a prism needs more.
         self.may_be_long = before.method == "loewner" and before.problem.is_flat
-        self.longest = None if self.may_be_long else native.ORDINARY
+        self.longest = before.longest if self.may_be_long else native.ORDINARY
 
     def run(self):
         try:
@@ -263,6 +263,7 @@ class _Run:
         if self.longest is None:
             first = self.proof.trees[0]
             self.longest = longest(first.problem, first.xstar, self.threads, self._is_late_told)
+            self.proof = replace(self.proof, longest=self.longest)
         return self.longest is not None
 
     def _is_doubtful(self):

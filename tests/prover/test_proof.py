@@ -667,6 +667,19 @@ def test_where_a_search_is_given_up_does_not_depend_on_when_it_is_looked_at(monk
     assert proof.tree == prove(resume=proof, jobs=1).tree
 
 
+def test_whether_long_orbits_help_is_asked_once(monkeypatch, tmp_path):
+    """A continued run has the answer, from the proof or from its file."""
+    asked, path = [], tmp_path / "a.proof"
+    monkeypatch.setattr(run, "longest", lambda *_: asked.append(1) or native.ORDINARY)
+    proof = prove(StandardMap("0.97"), backup=path)
+    assert proof.hopeless and asked == [1] and "\nlong orbits: no\n" in path.read_text()
+    for before in proof, path:
+        assert prove(resume=before).longest == native.ORDINARY
+    assert asked == [1]
+    with pytest.raises(check.Rejected, match="claims no theorem|goes on with the search"):
+        check.verify(path)
+
+
 def test_a_narrower_range_is_advised_where_cuts_are_along_the_parameter(made_up):
     for tree, advised in ("022P", True), ("002P", False):
         text = made_up(tree, method="loewner").report()
