@@ -861,7 +861,7 @@ sys.exit(main())
 """
     command = [sys.executable, "-I", "-c", code, os.path.dirname(FOLDER), path, "--jobs", jobs,
                "--exact"]
-    for n in range(24):
+    for n in range(12 * min(TORTURE, 2)):
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    text=True, start_new_session=True, cwd=tmp_path)
         process.stdout.readline()
