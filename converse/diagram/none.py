@@ -26,13 +26,15 @@ from ..prover.settings import Settings
 Point = Tuple[str, str]                 # x*, as the prover takes it
 
 SCAN = {1: 62, 2: 8}                    # x* of a scan in a turn
-SCAN_CUTS, STEP_CUTS = {1: 8, 2: 12}, {1: 14, 2: 18}    # of the trees that compare x*
-SCAN_LENGTH, SCAN_POINTS = 400, 20000   # the most points of their orbits; of a tree
+SCAN_CUTS, STEP_CUTS = {1: 8, 2: 12}, {1: 14, 2: 16}    # of the trees that compare x*
+SCAN_LENGTH = 400                       # the most points of their orbits; and of such a tree
+SCAN_POINTS = {1: 20000, 2: 1 << 17}
 LEAST_STEP = {1: 0.003, 2: 0.02}        # radians, by which x* is moved
 BASINS, CHOICES = 3, 6                  # x* that are improved; that are then tried to the end
 HINTS = 3                               # x* of neighbours that are tried first
 DEPTH = 60                              # cuts of a proof
 RANGE_FACTOR, RANGE_TRIES = 6, 2        # points of a range, by those of its middle; x* for it
+CHEAP = 4                               # A neighbour's x* that costs such a part is good.
 TREE_POINTS = 1000                      # A tree costs as much as so many more, to set it up.
 SCALE = 10 ** 4                         # x* has four decimals
 
@@ -77,18 +79,20 @@ def exclude(family: SymplecticMap, middle: SymplecticMap, hints: Sequence[Point]
         None if it was stopped.
     """
     search = _Search(Problem.of(middle), points, stop)
-    problem, choices = Problem.of(family), []   # type: Problem, List[Tuple[int, Point]]
+    problem, enough = Problem.of(family), points / CHEAP
+    best: Tuple[float, Optional[Point]] = (math.inf, None)
     for xstars in search.candidates(hints[:HINTS]):
         choices = search.cheapest(xstars)
+        best = min([best, *choices[:1]], key=lambda choice: choice[0])
         for cost, xstar in choices[:RANGE_TRIES]:
             grown = search.proof(problem, xstar, RANGE_FACTOR * max(points, cost))
             if grown:
                 proof = prove(resume=grown, jobs=1)     # Its tree is whole.
                 return Outcome(search.points, proof if proof.no_tori else None, xstar)
-        if choices:                     # A half of the cell costs less than other x*.
+        if best[0] < enough:            # A half of the cell costs less than other x*.
             break
-    return None if search.stopped else Outcome(search.points, None,
-                                               choices[0][1] if choices else None)
+        enough = math.inf
+    return None if search.stopped else Outcome(search.points, None, best[1])
 
 
 class _Search:
@@ -122,7 +126,7 @@ class _Search:
 
     def _left(self, place, cuts):
         """How much a small tree over a place leaves, and what it costs."""
-        _, grown = self._grown(self.problem, self._point(place), cuts, SCAN_POINTS, True,
+        _, grown = self._grown(self.problem, self._point(place), cuts, SCAN_POINTS[self.axes], True,
                                SCAN_LENGTH)
         if grown is None:
             return math.inf, 0

@@ -139,8 +139,10 @@ class Runs:
                                       if self.low <= end <= self.high)})
 
     def _is_known(self, value):
+        """Has it been looked at, is it excluded, or is V 0 there, so that every torus exists?"""
         return value in self.looks or any(
-            low <= value <= high for low, high in self.diagram.none)
+            low <= value <= high for low, high in self.diagram.none) or not any(
+            wave.middle + value * wave.parts[0] for wave in self.diagram.waves)
 
     def _finest(self):
         """How near values are looked at: nearer when nearer tori were tried."""

@@ -71,6 +71,13 @@ def test_a_torus_is_first_proved_in_the_middle_of_a_run():
     assert runs._proofs() == [some.Task(F("0.3"), runs.sizes[1])]
 
 
+def test_nothing_is_looked_for_where_v_is_0():
+    runs = some.Runs(Diagram.of(FourierMap({(1, "+cos"): {"k": 1}}, k=(-1, 1))), [])
+    assert runs._is_known(F(0)) and not runs._is_known(F(1, 8))
+    family = runs.diagram.over(((F(0), F(0)),))
+    assert none.exclude(family, family, [], 2000)[1:] == (None, None)
+
+
 def test_values_have_few_decimals():
     assert some.nice(F(1, 3), F(1, 100)) == F("0.33")
     assert some.nice(F(0), F(1, 100)) == 0 and some.nice(F("0.5"), F(1, 10)) == F("0.5")
