@@ -26,9 +26,8 @@ def _line(diagram, axes):
         return min(max(float(x), left), right)
 
     def fill(ends, colour, words, bottom=BAR):
-        start, end = map(place, ends)
-        axes.axvspan(start, end, bottom, 1, facecolor=colour, edgecolor=colour, label=words,
-                     linewidth=0.8 if start == end or colour == plot.GREEN else 0)
+        axes.axvspan(*map(place, ends), bottom, 1, facecolor=colour, edgecolor=colour, label=words,
+                     linewidth=0.8 if ends[0] == ends[1] or colour == plot.GREEN else 0)
 
     for n, ends in enumerate(diagram.none):
         fill(ends, NONE, NO_TORUS if n == 0 else None)

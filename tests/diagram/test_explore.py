@@ -201,6 +201,9 @@ def test_the_picture_of_a_line(tmp_path):
     assert "proved: no torus" in words and "seen, not proved" in words and "a torus" not in words
     axes = found.plot(diagram_figure.plot.new(4, 3, lambda figure: None).subplots())
     assert axes.get_xlabel() == "k" and axes.get_ylabel() == "rotation number"
+    found.sides["above"] = F("2.5"), (F(1, 2), F(0)), (1, 0)        # beyond the range: no line
+    axes = found.plot(diagram_figure.plot.new(4, 3, lambda figure: None).subplots())
+    assert not any(patch.get_linewidth() for patch in axes.patches)
 
 
 def test_rotation_numbers_are_folded():
