@@ -3,6 +3,7 @@
 import contextlib
 import gzip
 import itertools
+import operator
 import random
 import zlib
 from dataclasses import dataclass
@@ -141,12 +142,12 @@ def verify(path, jobs=1, sample=None, bar=False, exact=False):
 
     Raises
     ------
-    ValueError
-        jobs or sample is below 1.
+    TypeError, ValueError
+        jobs or sample is not a whole number, or is below 1.
     Rejected, NotConfirmed, Unusable
         The theorem is not verified; the text says why.
     """
-    if jobs < 1 or sample is not None and sample < 1:
+    if operator.index(jobs) < 1 or sample is not None and operator.index(sample) < 1:
         raise ValueError("jobs and sample are 1 or more")
     file = read(path)
     if isinstance(file, TorusClaim):
@@ -183,7 +184,7 @@ def verify(path, jobs=1, sample=None, bar=False, exact=False):
 
 def verdict(status, lines, file, confirmed, due, facts=()):
     """The Result, with this status only if as many leaves P, or pieces of a certificate, are
-    confirmed as are due: all of the file, unless the status is that of a spot check.
+    confirmed as are due: all of the file, unless the check was a spot check.
 
     Raises RuntimeError otherwise, as the checker is at fault.
     """

@@ -227,9 +227,9 @@ class Diagram(Kept):
         Raises
         ------
         ValueError
-            It is no theorem, or not of the family.
+            The member proves nothing, or is about another family.
         ConverseError
-            It contradicts what is proved already, which is an error of the program.
+            The member contradicts a proof of the diagram, which is an error of the program.
         """
         text = found._text()
         try:
@@ -378,7 +378,7 @@ class Diagram(Kept):
 
 
 def _member(member):
-    """What a check.Member says, without the contents of its certificate."""
+    """The statement of a check.Member, without the contents of its certificate."""
     rotation = None
     if isinstance(member.claim, check.TorusClaim):
         from ..tori.certificate import rotation_of

@@ -304,14 +304,15 @@ class Search:
         return [(tuple(cell.index), tuple(cell.cuts), cell.hint) for cell in cells]
 
     def grow(self, cells=None, leaves=MANY, points=math.inf, threads=1, look=bool):
-        """What these cells become, or those that are yet to be decided, when work() ends."""
+        """The subtrees of these cells, or of the cells that are yet to be decided, when work()
+        ends."""
         if cells is not None:
             check(lib.cv_restart(self.handle, len(cells), cells))
         self.work(threads, look, leaves, points)
         return self.grown()
 
     def grown(self):
-        """What the cells have become."""
+        """The subtrees of the cells."""
         view, cells = self.view(0), self.cells()
         size = len(view.text) - len(cells)
         return Grown(view.text[:size], view.steps[:size], view.counts, cells, view.needs_long,
@@ -351,7 +352,7 @@ def chosen_start(task):
 
 
 def grow(task, leaves=MANY, points=math.inf, threads=1, look=bool):
-    """What the root becomes: see Search.work.  None: look() returned True before the end."""
+    """The tree of the root: see Search.work.  None: look() returned True before the end."""
     search = Search(task)
     if not (search.work(0, look) and search.work(threads, look, leaves, points)):
         return None

@@ -710,6 +710,7 @@ def test_the_method_of_settings_is_that_of_prove():
         prove(LINE, method="loewner", digits=20)
 
 
+@pytest.mark.slow
 def test_a_range_over_orders_of_magnitude_takes_few_prisms(tmp_path):
     """Its parameter is cut until the amplitudes are about the same in all of a cell, and the angles
     are not cut meanwhile.  The checker takes the small ones in doubles."""
