@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from pages import PAGES
 
-from converse import SymplecticMap
+from converse import FourierMap, SymplecticMap
 
 H, A, DRIFT, PERIOD = 0.7, -1.3, 0.45, 3.0      # h, a, w and L of the page
 AMPLITUDES = Fraction(3, 10), Fraction(1, 5)
@@ -97,11 +97,12 @@ def test_backwards_is_the_inverse():
 def test_terms_of_the_force():
     """J' - J by the page, of K = 0.3 and k = (1, -2), and the amplitude and phase beside it."""
     found = re.findall(r"^\| ([+-]) K k (sin|cos)\(k.y\) \| ([+-]) K (sin|cos)\(k.y\) "
-                       r"\| K, (\S+) \|$", PAGES["form.md"], re.MULTILINE)
+                       r"\| K, `([+-](?:sin|cos))` \((\S+)\) \|$", PAGES["form.md"], re.MULTILINE)
     y, k, K = np.array([0.7, 0.4]), np.array([1, -2]), 0.3
     assert len(found) == 4
-    for sign, name, sign_of_V, of_V, phase in found:
+    for sign, name, sign_of_V, of_V, word, phase in found:
         here = SymplecticMap([(1, -2, phase)], [Fraction(3, 10)])
+        assert here == FourierMap({((1, -2), word): "0.3"})
         force = float(sign + "1") * K * k * getattr(math, name)(k @ y)
         assert here.map(y, 0 * y)[1] == pytest.approx(force, abs=1e-12)
 

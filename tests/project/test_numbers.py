@@ -69,7 +69,7 @@ def test_the_files_of_the_inputs():
 def test_the_tutorial_of_a_map(tmp_path):
     """The file that it has one write is proved as it says."""
     (tmp_path / "mine.json").write_text(
-        re.search(r"```json\n(.*?)```", PAGES["first-map.md"], re.DOTALL)[1])
+        re.findall(r"```json\n(.*?)```", PAGES["first-map.md"], re.DOTALL)[1])
     counts = sharper(read_input(tmp_path / "mine.json"))
     assert missing("first-map.md", counts.proved, counts.max_NTsteps) == []
 
@@ -123,7 +123,7 @@ def test_the_torus_of_the_tutorial(tmp_path):
     """Residuals differ between machines, by a factor of two."""
     from converse import tori
 
-    text = re.search(r"```json\n(.*?)```", PAGES["first-map.md"], re.DOTALL)[1]
+    text = re.findall(r"```json\n(.*?)```", PAGES["first-map.md"], re.DOTALL)[1]
     (tmp_path / "mine.json").write_text(text.replace('["0.5", "2"]', '["0.1", "0.1"]'))
     proof = tori.prove(tori.find(read_input(tmp_path / "mine.json").map, "spiral"))
     for value in proof.residual, proof.needed, proof.distance:
