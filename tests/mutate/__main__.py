@@ -35,8 +35,9 @@ PATIENCE = 900                          # seconds, for the tests of one file
 # The files that are mutated: all of csrc, and these files of the folders of converse.  The files
 # that guess where to start are left out, because no proof rests on them.
 PYTHON = {"orbits": ("enclosure", "exponents"),
-          "check": ("claim", "cover", "criterion", "exact", "field", "links", "lockstep", "diagram",
-                    "portrait", "proof_file", "series", "tori", "torus", "torus_file", "tree"),
+          "check": ("claim", "container", "cover", "criterion", "exact", "field", "links",
+                    "lockstep", "diagram", "portrait", "proof_file", "series", "tori", "torus",
+                    "torus_file", "tree"),
           "tori": ("certificate", "field", "proved")}
 GUESSES = ("thesis/start.c", "loewner/start.c", "loewner/score.c",
            "model/stationary.c")
@@ -81,6 +82,8 @@ TESTS = {
     "check/links": PARTS,
     "check/lockstep": ["test_check.py: lockstep or lanes or roundings or term or turns or sums or "
                        "slopes or centres or cuts_are", *PARTS, BOTH_PATHS],
+    "check/container": ["test_check.py: header or numbers or control or versions",
+                        "check/test_diagram.py", "test_portrait.py: altered"],
     "check/diagram": ["check/test_diagram.py", "test_value.py"],
     "check/portrait": ["test_portrait.py"],
     "check/proof_file": ["test_check.py: header or numbers or trees or theorem or potentials or "
