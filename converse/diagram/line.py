@@ -149,14 +149,14 @@ class _Line:
                     self._divided(task)
 
     def _cells(self):
-        """The cells that are tried next, the widest first; one that touches a part without tori
-        counts as if it were wider, and one in which a torus is seen as if it were narrower."""
+        """The cells that are tried next, the widest first, from the top down; one that touches a
+        part without tori counts as if it were wider, one with a torus that is seen as narrower."""
         ends = {end for each in self.diagram.none for end in each}
 
         def rank(cell):
             urgency = cell.weight * (EDGE if cell.low in ends or cell.high in ends else 1)
             seen = self.tori.seen_in(cell.low, cell.high)
-            return (cell.low - cell.high) * urgency / (SEEN if seen else 1), cell.low
+            return (cell.low - cell.high) * urgency / (SEEN if seen else 1), -cell.low
 
         tori = [(each.low, each.high) for each in self.diagram.tori]
         todo, chosen = sorted(self.cells, key=rank), []     # type: List[Cell], List[Cell]
