@@ -22,8 +22,10 @@ ENDING = ending(
     "converse-check  verifies the file independently\n"
     "converse        proves that there are no tori, for one value or range\n"
     "converse-tori   proves one torus, for one value or range", (
-        (0, "something is proved"), (1, "nothing is proved"),
-        (2, "bad usage, input or file"), (SIGNALS[0], SIGNALS[1] + ", what was proved is saved")))
+        (0, "tori are proved for a value, and their absence for another; with two parameters, "
+            "something is proved"), (1, "nothing is proved"), (2, "bad usage, input or file"),
+        (3, "tori are proved, or their absence, but not both"),
+        (SIGNALS[0], SIGNALS[1] + ", what was proved is saved")))
 
 
 def _budget(text):
@@ -84,7 +86,8 @@ def run(options):
     if options.graphics is not None:
         from ..draw import diagram_figure
         diagram_figure.draw(found, options.graphics)
-    return 0 if found.members or found.sides else 1
+    proved = [bool(found.none), bool(found.tori)]
+    return 0 if all(proved) or any(proved) and len(found.ranges) > 1 else 3 if any(proved) else 1
 
 
 def _is_diagram(name):

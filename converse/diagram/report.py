@@ -52,8 +52,11 @@ def _grounds(diagram, tori, file):
         yield "Verify", verify_text(file, "diagram")
     for words, rotation in tori:
         yield "Rotation", "%s: %s" % (words, rotation_text(rotation))
-    yield "Searched", "%s; between proved values nothing is proved" % box_words(
-        diagram.names, diagram.ranges)
+    sides = ((diagram.none, "absence of tori"), (tori, "torus"))
+    yield "Searched", "%s; between proved values nothing is proved" % "; ".join([
+        box_words(diagram.names, diagram.ranges), *(
+            "no %s was proved" % words for found, words in sides
+            if not found and len(diagram.ranges) == 1)])
     if len(diagram.ranges) == 1:
         yield "Open", "; ".join(whole("%s < %s < %s" % (
             exact_text(low), *diagram.names, exact_text(high))) for low, high in diagram.open

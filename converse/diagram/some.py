@@ -8,7 +8,7 @@ to both ends of the run.  What is seen is floating point; the checker verifies e
 
 import itertools
 from fractions import Fraction
-from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from ..model.map import SymplecticMap
 from ..storage.files import ConverseError
@@ -18,14 +18,17 @@ from ..tori.regular import Orbits, regular
 from ..tori.torus import family as potential_of
 from .value import Diagram, Seen
 
-GRID = 16                               # values that are looked at first: parts of the range
-FINEST, COARSE = 1 << 13, 32            # No two values are nearer than a part of the range; than
-BORDER = 4                              # COARSE such parts, unless a torus is seen at one only.
+# By the number of angles.  First GRID parts of the range are looked at; then gaps between values,
+# down to 1/PARTS of the range, and where a torus is seen at one end only down to 1/FINEST.
+GRID, PARTS, FINEST = {1: 16, 2: 8}, {1: 1 << 8, 2: 1 << 5}, {1: 1 << 15, 2: 1 << 9}
 SEEN = 1e-9                             # turns: an orbit that changes less is taken for a torus
-MESH = {1: (1 << 12, 1 << 15, 1 << 18), 2: (1 << 16, 1 << 18, 1 << 20)}     # sizes of meshes
-# Points of orbits that cost as much time as a look, or as a point of a mesh.
-LOOK_POINTS, MESH_POINTS = {1: 1_500_000, 2: 60_000_000}, 64
-LOOKS, PROOFS = 3, 1                    # of a round
+MESH = {1: (1 << 12, 1 << 15, 1 << 18), 2: (1 << 20,)}          # sizes of meshes
+BORDERS, LOOKS, PROOFS = 2, 2, 1        # of a round
+# What costs as much time as so many points of orbits: a look; a proof, and each mode of its series;
+# a try that fails, and each point of its mesh.
+LOOK = {1: 1_300_000, 2: 9_000_000}
+PROOF, MODE = {1: 2_200_000, 2: 50_000_000}, 400
+FAILURE, POINT = {1: 2_200_000, 2: 35_000_000}, {1: 24, 2: 50}
 
 
 class Task(NamedTuple):
@@ -59,15 +62,15 @@ def attempt(family: SymplecticMap, task: Task, stop: Callable[[], bool] = bool
     """
     if stop():
         return None
+    n = family.dimension
     if not task.points:
         best = next(iter(regular(Orbits(potential_of(family)[0]))), None)
-        return Outcome(LOOK_POINTS[family.dimension],
-                       best.rotation if best and best.change < SEEN else None, None)
+        return Outcome(LOOK[n], best.rotation if best and best.change < SEEN else None, None)
     try:
         torus = prove(family, points=task.points)
     except ConverseError:               # not found, or not confirmed
-        return Outcome(MESH_POINTS * task.points, None, None)
-    return Outcome(MESH_POINTS * task.points, None, torus)
+        return Outcome(FAILURE[n] + POINT[n] * task.points, None, None)
+    return Outcome(PROOF[n] + MODE * torus.worst.modes, None, torus)
 
 
 class Runs:
@@ -78,7 +81,7 @@ class Runs:
 
     def __init__(self, diagram: Diagram, lines: Sequence[Sequence[str]]) -> None:
         self.diagram = diagram
-        self.sizes = MESH[diagram.family.dimension]
+        self.n = diagram.family.dimension
         self.looks: Dict[Fraction, Optional[Tuple[float, ...]]] = {}
         self.tried: Dict[Fraction, int] = {}
         for kind, value, *words in lines:
@@ -88,7 +91,7 @@ class Runs:
                 self.tried[Fraction(value)] = int(words[0])
         low, high = diagram.ranges[0]
         self.low, self.high = low, min(high, max((end for _, end in diagram.open), default=high))
-        self.grain = (high - low) / FINEST
+        self.grain = (high - low) / FINEST[self.n]
 
     def lines(self) -> List[str]:
         """The state, for the file."""
@@ -97,8 +100,11 @@ class Runs:
             "tried %s %d" % item for item in sorted(self.tried.items())]
 
     def round(self) -> List[Task]:
-        """What is done next: tries to prove, and looks."""
-        return [*self._proofs(), *self._looks()]
+        """What is done next: looks at a grid, then tries to prove, and looks."""
+        grid = [nice(self.low + (self.high - self.low) * i / GRID[self.n], self.grain)
+                for i in range(GRID[self.n] + 1)]
+        new = [Task(value) for value in dict.fromkeys(grid) if not self._is_known(value)]
+        return new[:BORDERS + LOOKS] or [*self._proofs(), *self._looks()]
 
     def take(self, task: Task, outcome: Optional[Outcome]) -> None:
         """Records what became of a task; None: it was not done."""
@@ -118,20 +124,18 @@ class Runs:
         return any(seen and low <= value <= high for value, seen in self.looks.items())
 
     def _looks(self):
-        """Values of a grid, then those in the widest gaps between known values.  A gap between one
-        that is seen and one that is not counts BORDER times, and is closed further."""
-        grid = [nice(self.low + (self.high - self.low) * i / GRID, self.grain)
-                for i in range(GRID + 1)]
-        new = [value for value in dict.fromkeys(grid) if not self._is_known(value)]
-        if not new:
-            gaps, ends = [], self._values()
-            for a, b in zip(ends, ends[1:]):
-                border = bool(self.looks.get(a)) != bool(self.looks.get(b))
-                if b - a > (self._finest() if border else self.grain * COARSE):
-                    gaps.append(((a - b) * (BORDER if border else 1), a, b))
-            new = [nice((a + b) / 2, self.grain) for _, a, b in sorted(gaps)]
-            new = [value for value in new if not self._is_known(value)]
-        return [Task(value) for value in new[:LOOKS]]
+        """The middles of the widest gaps between known values, where a torus is seen at one end,
+        and elsewhere."""
+        ends = self._values()
+        gaps: Tuple[List[Any], List[Any]] = ([], [])
+        for a, b in zip(ends, ends[1:]):
+            border = bool(self.looks.get(a)) != bool(self.looks.get(b))
+            middle = nice((a + b) / 2, self.grain)
+            if b - a > (self.grain if border else self.grain * FINEST[self.n] / PARTS[self.n]) \
+                    and not self._is_known(middle):
+                gaps[border].append((a - b, middle))
+        return [Task(middle) for each, most in zip(gaps, (LOOKS, BORDERS))
+                for _, middle in sorted(each)[:most]]
 
     def _values(self):
         """The values that were looked at, and the ends of the parts without tori, in order."""
@@ -144,44 +148,54 @@ class Runs:
             low <= value <= high for low, high in self.diagram.none) or not any(
             wave.middle + value * wave.parts[0] for wave in self.diagram.waves)
 
-    def _finest(self):
-        """How near values are looked at: nearer when nearer tori were tried."""
-        most = max(self.tried.values(), default=0)
-        return self.grain * (COARSE if most < self.sizes[1] else 1)
-
     def _proofs(self):
-        """For each run the value that is tried next, and at which size, the smallest first."""
-        tasks = [task for run in self.runs() for task in self._of_run(run)]
-        return sorted(tasks, key=lambda task: task.points)[:PROOFS]
+        """The tries that are next, with the smallest mesh first, and where the part of a run that
+        is not proved is widest."""
+        tries = [each for run in self.runs() for each in self._of_run(run)]
+        return [Task(value, size) for size, _, value in sorted(tries)[:PROOFS]]
+
+    def _proved(self):
+        return [value for each in self.diagram.tori for value in {each.low, each.high}]
 
     def runs(self) -> List[List[Fraction]]:
-        """Values at which tori are seen, next to each other."""
+        """Values at which tori are seen, tried or proved, next to each other."""
         found: List[List[Fraction]] = [[]]
-        for value in self._values():
-            if self.looks.get(value):
+        good = {*self.tried, *self._proved(),
+                *(value for value, seen in self.looks.items() if seen)}
+        for value in sorted({*good, *self._values()}):
+            if value in good:
                 found[-1].append(value)
             elif found[-1]:
                 found.append([])
         return [run for run in found if run]
 
     def _of_run(self, run):
-        """The next tries in a run: first in its middle, then nearer to its ends."""
-        proved = [each.low for each in self.diagram.tori if run[0] <= each.low <= run[-1]]
-        proved += [each.high for each in self.diagram.tori if run[0] <= each.high <= run[-1]]
+        """The next tries in a run: first between its middle and its upper end, then between proved
+        values and both ends."""
+        middle, proved = len(run) // 2, [x for x in self._proved() if run[0] <= x <= run[-1]]
         if not proved:
-            return self._next([run[len(run) // 2]])
-        ends = [[x for x in reversed(run) if x > max(proved)]]
-        if run[0] > self.low:
-            ends.append([x for x in run if x < min(proved)])
-        return [task for end in ends for task in self._next(end)]
+            return self._next(None, run[middle:]) or self._next(None, run[:middle][::-1])
+        low, high = min(proved), max(proved)
+        found = self._next(high, [x for x in run if x > high])
+        if run[0] > self._values()[0]:
+            found += self._next(low, [x for x in reversed(run) if x < low])
+        return found
 
-    def _next(self, values):
-        """Of values in the order of preference the first with the smallest size that is left."""
-        for size in self.sizes:
-            for value in values[:3]:
-                if self.tried.get(value, 0) < size:
-                    return [Task(value, size)]
-        return []
+    def _next(self, start, values):
+        """(size, less the width of the part, value) of a try at one of the values, which are ever
+        less likely to succeed: in the middle of those before the first at which a try with this
+        mesh failed.  Then between the start, where a torus is proved, and the first value."""
+        width = self.low - self.high
+        if start is not None:
+            values = [value for value in values if abs(value - start) > self.grain]
+            width = -abs(values[-1] - start) if values else width
+        for size in MESH[self.n]:
+            left = list(itertools.takewhile(lambda value: self.tried.get(value, 0) < size, values))
+            if left:
+                return [(size, width, left[len(left) // 2])]
+        if start is None or not values or abs(values[0] - start) <= 2 * self.grain:
+            return []
+        return [(size, width, nice((start + values[0]) / 2, self.grain))]
 
 
 def nice(value: Fraction, grain: Fraction) -> Fraction:

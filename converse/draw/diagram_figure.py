@@ -1,10 +1,12 @@
 """The figure of a diagram: SVG, PNG or PDF, by matplotlib."""
 
+from fractions import Fraction
+
 from . import plot
 
 LINE_SIZE, PLANE_SIZE = (6.4, 2.6), (6.4, 5.0)      # inches
 BAR = 0.84                              # where the bar of a line begins, as a part of the height
-MARGIN = 0.02                           # beyond the range, as a part of it
+MARGIN, EXCLUDED = 0.02, 0.2            # beyond what is shown; of ends without tori, as parts of it
 NONE, LARGER = "#7fa8d1", "#cfdeed"     # no torus; with all larger multiples
 NO_TORUS, TORUS, SEEN = "proved: no torus", "proved: a torus", "seen, not proved"
 
@@ -18,7 +20,7 @@ def draw(diagram, path=None, ax=None):
 
 def _line(diagram, axes):
     """A bar along the parameter, and below it the rotation numbers of the tori."""
-    (low, high), = diagram.ranges
+    low, high = _shown(diagram)
     beyond = MARGIN * float(high - low)
     left, right = float(low) - beyond, float(high) + beyond
 
@@ -47,6 +49,14 @@ def _line(diagram, axes):
                                                             == 1 else "vector"))
     if axes.get_legend_handles_labels()[1]:
         axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncol=3, frameon=False)
+
+
+def _shown(diagram):
+    """The range, of whose ends without tori a part is cut off."""
+    (low, high), = diagram.ranges
+    inside = [x for ends in (*diagram.open, *diagram.tori) for x in ends[:2]] or [low, high]
+    more = Fraction(EXCLUDED) * ((max(inside) - min(inside)) or high - low)
+    return max(low, min(inside) - more), min(high, max(inside) + more)
 
 
 def _folded(rotation):

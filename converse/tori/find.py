@@ -12,11 +12,11 @@ from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from .continuation import POINTS, TOO_LARGE, Found, NotFound, Way, ellipse, newton, place
 from .effort import BALLS, REFINING, SINGLE, SOLVING, balls, limited, some
-from .nearest import Place, nearest, noble, rotation_of
+from .nearest import Place, nearest, rotation_of
 from .newton import Frame, Mesh
 from .plan import MARGIN, Weights, plan
 from .refinement import SPARE_BITS, Modes, accepted, layers_for, numbers_of, refined, taken
-from .regular import Orbit, Orbits, regular, with_rotation
+from .regular import Orbit, Orbits, regular, with_rotation, with_vectors
 from .rotation import Rotation
 from .torus import Torus, family
 
@@ -213,13 +213,13 @@ class Search:
         orbits = self._orbits(s)
         self.tell("looking for regular orbits at %s" % place(self.at(s), self.amplitude(s)))
         made: List[Tuple[Way, Found]] = []
-        for orbit in (seen := regular(orbits)):
+        seen = regular(orbits)
+        for orbit in with_vectors(orbits, seen):
+            assert orbit.vector is not None
             self.tell("looking for a torus near (%s)" % ", ".join(
                 "%.6f" % w for w in orbit.rotation))
-            rotation = nearest(orbit.rotation) if orbit.noble is None else noble(orbit.noble)
             try:
-                made.append(self._made(orbits, orbit if orbit.noble else with_rotation(
-                    orbits, rotation, orbit), rotation, s))
+                made.append(self._made(orbits, orbit, orbit.vector, s))
             except NotFound:
                 pass
             if len(made) == ENOUGH:

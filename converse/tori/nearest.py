@@ -11,28 +11,29 @@ Rev. A 34, 3426, 1986).  On a line these are the noble numbers, whose continued 
 import re
 from fractions import Fraction
 from functools import lru_cache
-from itertools import permutations, product
+from itertools import permutations, product, repeat
 from math import ceil, floor
 from typing import Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from ..model.exact import Number, exact, short_text
-from .field import Element, Field, Polynomial, determinant, real_roots
+from .field import Field, Polynomial, determinant, real_roots
+from .newton import combined
 from .rotation import Rotation, read_rotation
 
 TOLERANCE, LEAST = Fraction(1, 1000), Fraction(1, 10 ** 12)
 COARSEST = {1: LEAST, 2: TOLERANCE}         # For two angles a smaller tolerance takes minutes.
 FIELDS = (-1, -2, 1, 1), (-1, -1, 0, 1)         # of 2 cos(2 pi/7), and of the spiral mean
 GOLDEN = -1, 1, 1
-HIGHEST = 3                             # coefficient of the integers of a field that are tried
+HIGHEST = 2                             # coefficient of the integers of a field that are tried
 STEEPEST = 60.0                         # ratio of weights in a triangle
-SEEN, COMPARED = 200, 6                 # candidates, judged by few k and by many
+SEEN, POOLED, COMPARED = 200, 800, 6    # candidates of a triangle, of all, and in the end,
+DISTINCT = 100                          # which differ by the tolerance over DISTINCT.
 LARGEST = 20                            # denominator of a triangle, times the tolerance^(2/3)
 NEAREST, REACH = 40, 500                # |k| up to which divisors are judged so
 DECIMALS = re.compile(r"(\s*[-+]?(\d+\.?\d*|\.\d+)\s*(,|$))+", re.ASCII)
 
-Candidate = Tuple[Field, Tuple[Element, ...]]
 Place = Sequence[Union[Number, float]]
 # Triangles are (A, B, C), the right angle at B; points are triples (p0, p1, q).
 Triangle = Tuple[Tuple[int, int, int], ...]
@@ -99,14 +100,11 @@ def nearest(place: Place, tolerance: Union[Number, float, None] = None,
     if not LEAST <= within <= 1:
         raise ValueError("the tolerance, %s, is not from %s to 1"
                          % (short_text(within), short_text(LEAST)))
-    # A Farey interval of this size has denominators of about within^(-1/2), a triangle of about
-    # within^(-2/3), and the divisors that set this vector apart are those of such k.
-    delta = float(within) ** (0.5 if n == 1 else 2 / 3)
-    found = _nobles(target[0], within, delta) if n == 1 else _cubics(target, within, delta)
+    found = _nobles(target[0], within) if n == 1 else cubics(target, within)
+    delta = _delta(n, within)
     k = _modes(n, ceil(min(10 / delta, REACH)))
     best, least = None, None
-    for field, vector in found:
-        rotation = Rotation("", field.polynomial, (field.low, field.high), vector)
+    for rotation in found:
         if any(low < w - within or high > w + within
                for (low, high), w in zip(rotation.turns(30), target)):
             continue
@@ -119,6 +117,12 @@ def nearest(place: Place, tolerance: Union[Number, float, None] = None,
     return best
 
 
+def _delta(n, within):
+    """A Farey interval of the size `within` has denominators of about within^(-1/2), a triangle of
+    about within^(-2/3), and the divisors that set a vector apart are those of such k."""
+    return float(within) ** (0.5 if n == 1 else 2 / 3)
+
+
 # ---- one angle
 
 Interval = Tuple[Tuple[int, int], Tuple[int, int]]      # neighbours p/q and r/s of a Farey sequence
@@ -127,13 +131,12 @@ Interval = Tuple[Tuple[int, int], Tuple[int, int]]      # neighbours p/q and r/s
 def noble(interval: Interval) -> Rotation:
     """The noble number (p t + r)/(q t + s), t the golden mean, between p/q and r/s.  With its ends
     exchanged an interval has another one, nearer to p/q."""
-    field = Field(GOLDEN, real_roots(GOLDEN)[-1])
     above, below = zip(*interval)
-    return Rotation("", field.polynomial, (field.low, field.high), (_quotient(
-        field, ((Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))), above, below),))
+    field = _field(GOLDEN)
+    return _rotation(field, [_quotient(field, (field.t, field.element([1])), above, below)])
 
 
-def _nobles(w: Fraction, within: Fraction, delta: float) -> List[Candidate]:
+def _nobles(w: Fraction, within: Fraction) -> List[Rotation]:
     """The most promising noble numbers of the Farey intervals that meet the range but do not lie
     within smaller ones that do."""
     low, high, t = w - within, w + within, (5 ** 0.5 - 1) / 2
@@ -151,9 +154,18 @@ def _nobles(w: Fraction, within: Fraction, delta: float) -> List[Candidate]:
             intervals += [(a, b) for a, b in ((left, middle), (middle, right))
                           if Fraction(*a) < high and low < Fraction(*b)]
     score = _near_part(np.array(omega)[:, None], np.arange(1, SEEN + 1)[:, None],
-                       np.arange(1.0, SEEN + 1), delta)
-    return [(each.field, each.vector) for each in (
-        noble(found[j]) for j in np.argsort(score, kind="stable")[:COMPARED])]
+                       np.arange(1.0, SEEN + 1), _delta(1, within))
+    return [noble(found[j]) for j in np.argsort(score, kind="stable")[:COMPARED]]
+
+
+@lru_cache(maxsize=None)
+def _field(polynomial):
+    """The field of its largest real root."""
+    return Field(polynomial, real_roots(polynomial)[-1])
+
+
+def _rotation(field, vector):
+    return Rotation("", field.polynomial, (field.low, field.high), tuple(vector))
 
 
 def _quotient(field, weights, above, below):
@@ -165,47 +177,47 @@ def _quotient(field, weights, above, below):
 
 # ---- two angles
 
-def _cubics(target, within, delta) -> List[Candidate]:
-    """The most promising vectors of both fields, as far as doubles can tell."""
-    found = []
+def cubics(target: Sequence[Union[Fraction, float]], within: Fraction,
+           count: int = COMPARED) -> List[Rotation]:
+    """Vectors of both fields within some distance of a place, those with the best divisors first,
+    as far as doubles can tell."""
+    target, delta = [Fraction(w) for w in target], _delta(2, within)
+    kept: List[tuple] = []
     for polynomial in FIELDS:
-        field = Field(polynomial, real_roots(polynomial)[-1])
-        bases, roots = _bases(polynomial), np.roots(polynomial[::-1])
-        roots = roots[np.argsort(abs(roots - _value(field)))]           # t first
-        values = bases @ np.vander(roots, 3, increasing=True).T         # (bases, weights, roots)
+        bases, values = _bases(polynomial)
         for triangle in _triangles(target, within):
-            corners = np.array(triangle, float)
-            at = values[..., 0].real @ corners                          # (bases, 3)
-            close = np.flatnonzero((abs(at[:, 1:] / at[:, :1] - np.array(target, float))
-                                    <= float(within)).all(1))
-            if len(close):
-                score = _scores(values[close], corners, delta)
-                best = np.argsort(score, kind="stable")[:4 * COMPARED]
-                found += [(score[j], field, bases[close[j]], triangle) for j in best]
-    chosen: List[Candidate] = []
-    for _, field, weights, triangle in sorted(found, key=lambda each: each[0]):
-        q, p0, p1 = zip(*triangle)
-        elements = [tuple(map(Fraction, w.tolist())) for w in weights]
-        candidate = field, tuple(_quotient(field, elements, p, q) for p in (p0, p1))
-        if candidate not in chosen:
-            chosen.append(candidate)
-        if len(chosen) == COMPARED:
+            q, *p = (combined(column, values[:, 0].real) for column in zip(*triangle))
+            close = np.flatnonzero(np.all([abs(p_i - float(w) * q) <= float(within) * q
+                                           for p_i, w in zip(p, target)], 0))
+            omega, score = _far_part(values[..., close], triangle, delta)
+            best = np.argsort(score, kind="stable")[:SEEN]
+            kept += zip(score[best], omega[:, best].T, repeat(polynomial), close[best],
+                        repeat(triangle))
+    kept = sorted(kept, key=lambda each: each[0])[:POOLED]
+    k = _modes(2, NEAREST)
+    near = _near_part(np.array([each[1] for each in kept]).reshape(-1, 2), k, abs(k).sum(1), delta)
+    chosen: List[Rotation] = []
+    for j in np.argsort(np.maximum(near, [each[0] for each in kept]), kind="stable"):
+        _, omega, polynomial, basis, triangle = kept[j]
+        if all(abs(omega - other.floats).max() > float(within) / DISTINCT for other in chosen):
+            field, (q, *p) = _field(polynomial), zip(*triangle)
+            weights = [tuple(map(Fraction, w)) for w in _bases(polynomial)[0][basis].tolist()]
+            chosen.append(_rotation(field, [_quotient(field, weights, each, q) for each in p]))
+        if len(chosen) == count:
             break
     return chosen
 
 
-def _value(field) -> float:
-    """t."""
-    return float(field.bounds(field.t, 20)[0])
-
-
 @lru_cache(maxsize=None)
-def _bases(polynomial: Polynomial) -> np.ndarray:
+def _bases(polynomial: Polynomial) -> Tuple[np.ndarray, np.ndarray]:
     """Triples of positive integers of the field with determinant 1 or -1, of comparable size and in
-    all orders: shape (number, 3, 3), coefficients of 1, t, t^2 last."""
-    t = _value(Field(polynomial, real_roots(polynomial)[-1]))
+    all orders: shape (number, 3, 3), coefficients of 1, t, t^2 last; and their values at t and at
+    its conjugates, shape (3, conjugates, number)."""
+    roots, field = np.roots(polynomial[::-1]), _field(polynomial)
+    order = np.argsort(abs(roots - float(field.bounds(field.t, 20)[0])))
+    powers = np.vander(roots[order], 3, increasing=True)
     elements = np.array(list(product(range(-HIGHEST, HIGHEST + 1), repeat=3)))
-    value = elements @ np.array([1, t, t * t])
+    value = elements @ powers[0].real
     elements, value = elements[value > 1e-9], value[value > 1e-9]
     i, j = np.triu_indices(len(elements), 1)
     crosses = np.cross(elements[i], elements[j])
@@ -215,7 +227,8 @@ def _bases(polynomial: Polynomial) -> np.ndarray:
     triples = np.stack([i[pair], j[pair], k], 1)
     sizes = value[triples]
     triples = triples[sizes.max(1) < STEEPEST * sizes.min(1)]
-    return np.concatenate([elements[triples[:, order]] for order in permutations(range(3))])
+    triples = np.concatenate([triples[:, order] for order in permutations(range(3))])
+    return elements[triples], np.moveaxis((powers @ elements.T)[:, triples], -1, 0).copy()
 
 
 def halves(triangle: Triangle) -> Tuple[Triangle, Triangle]:
@@ -252,31 +265,22 @@ def _triangles(target, within) -> Iterator[Triangle]:
             return
 
 
-def _scores(values, corners, delta) -> np.ndarray:
-    """About c(delta) of each vector, in doubles; values: (number, weights, conjugates)."""
-    total = np.einsum("nwr,wc->nrc", values, corners)
-    conjugates = total[..., 1:] / total[..., :1]                        # (number, conjugate, 2)
-    omega = conjugates[:, 0].real
-    denominator = abs(total[..., 0].prod(1))                            # the norm of sum c_i q_i
-    v, w = np.eye(2)
-
-    def form(m):
-        return (((conjugates[:, 1:] - conjugates[:, :1]) @ m).prod(1)).real
-
-    a, c = form(v), form(w)
-    b, largest = form(v + w) - a - c, np.maximum(abs(a), abs(c))
+def _far_part(values, triangle, delta) -> Tuple[np.ndarray, np.ndarray]:
+    """(vectors, about what large k contribute to c(delta) of each), in doubles; values: (weights,
+    conjugates, number)."""
+    q, *p = (combined(column, values) for column in zip(*triangle))
+    omega = np.array(p) / q                                     # (component, conjugate, number)
+    (x0, x1), (y0, y1) = omega[:, 1:] - omega[:, :1]
+    # The form (x0 v + y0 w)(x1 v + y1 w) is a v^2 + b v w + c w^2; q has the norm of sum c_i q_i.
+    a, b, c = (x0 * x1).real, (x0 * y1 + x1 * y0).real, (y0 * y1).real
+    largest = np.maximum(abs(a), abs(c))
     for side in (b, -b):                # the largest value along an edge of the ball
         bend = a - side + c
         bend[bend == 0] = 1e-300
         at = (2 * a - side) / (2 * bend)
         largest = np.where((at > 0) & (at < 1), np.maximum(
             largest, abs((4 * a * c - b * b) / (4 * bend))), largest)
-    score = (2 / (np.e * delta)) ** 2 * denominator * largest / (2 * np.pi)
-    k = _modes(2, NEAREST)
-    best = np.argsort(score)[:SEEN]
-    found = np.full(len(score), np.inf)
-    found[best] = np.maximum(score[best], _near_part(omega[best], k, abs(k).sum(1), delta))
-    return found
+    return omega[:, 0].real, (2 / (np.e * delta)) ** 2 * abs(q.prod(0)) * largest / (2 * np.pi)
 
 
 def _modes(n, reach) -> np.ndarray:

@@ -15,6 +15,7 @@ orbits.  Orbits on islands are regular, too.  Their rotation vectors lie on a re
 of small integers: such vectors are refused.
 """
 
+from fractions import Fraction
 from math import pi
 from typing import List, NamedTuple, Optional, Sequence, Tuple
 
@@ -22,7 +23,7 @@ import numpy as np
 
 from .._native import ffi, lib
 from ..model.potential import FourierSum
-from .nearest import Interval
+from .nearest import cubics, noble
 from .rotation import Rotation
 
 GRID = 64                               # points of an axis, among which x* is chosen
@@ -43,9 +44,12 @@ SIDE, LENGTH = 96, 500                  # the grid, and the points of a half, do
 STAGES = ((800, 7, 1e-5), (700, 7, 1e-5), (500, 12, 1e-6), (350, 45, 3e-8), (250, 45, 3e-8),
           (150, 45, 3e-8), (100, 45, 3e-8))
 CHILDREN = 4
+# Near the rotation vectors of so many orbits, then of the best of those found, there are looked for
+# NEIGHBOURS vectors of fields, within this.
+NEAR, NEIGHBOURS = ((12, Fraction(1, 1000)), (6, Fraction(1, 4000))), 8
 WALK, WALKED = 10, 1 << 14               # steps to a rotation vector, points of a half
 FAR = 0.003                             # |k.omega - m| |k|^2 is larger for good vectors.
-APART = 3e-3                            # vectors that are listed differ by so much
+APART, ALIKE = 3e-3, 1e-5               # vectors that are listed differ by so much; exact ones
 CHAOTIC = 1e-5                          # Orbits that change more are not listed.
 
 
@@ -60,15 +64,14 @@ class Orbit(NamedTuple):
         From one half of it to the other, in turns; on a torus this is little more than rounding.
     momentum
         With which it leaves x*, in turns: the step that follows is the momentum and the force.
-    noble
-        With one angle: the Farey neighbours that `nearest.noble` takes; the rotation number is
-        this number, about.
+    vector
+        The exact rotation vector that it has, about, as far as one was chosen.
     """
 
     rotation: Tuple[float, ...]
     change: float
     momentum: Tuple[float, ...]
-    noble: Optional[Interval] = None
+    vector: Optional[Rotation] = None
 
 
 class Orbits:
@@ -151,6 +154,22 @@ def regular(orbits: Orbits) -> List[Orbit]:
     return [orbit for orbit in found if orbit.change < CHAOTIC]
 
 
+def with_vectors(orbits: Orbits, seen: Sequence[Orbit]) -> List[Orbit]:
+    """The most regular orbits that have exact rotation vectors, near those that are seen.
+
+    Of two angles all orbits that are seen may be regular to rounding, and most vectors near them
+    lie in gaps between the tori.  So an orbit is looked for of each of several vectors."""
+    if orbits.n == 1:
+        return list(seen)
+    best, known = list(seen), []        # type: List[Orbit], List[Orbit]
+    for kept, within in NEAR:
+        for near in best[:kept]:
+            known += [with_rotation(orbits, vector, near)._replace(vector=vector)
+                      for vector in cubics(near.rotation, within, NEIGHBOURS)]
+        best = _apart(sorted(known, key=lambda orbit: orbit.change), ALIKE)
+    return best[:KEPT]
+
+
 def with_rotation(orbits: Orbits, rotation: Rotation, near: Optional[Orbit] = None) -> Orbit:
     """The orbit with this rotation vector, as far as there is one.
 
@@ -174,16 +193,18 @@ def _on_a_line(orbits):
         new = [each for p, q in intervals for each in ((p, q), (q, p))]
         omega = np.array([(p * GOLDEN + r) / (q * GOLDEN + s) for (p, q), (r, s) in new])
         for interval, w, p, off, change in zip(new, omega, *_located(orbits, omega, *points)):
-            known[interval] = Orbit((float(w),), float(off + change), (float(p),), interval)
-        best, seen = sorted(known.values(), key=lambda each: each.change), []
+            known[interval] = Orbit((float(w),), float(off + change), (float(p),))
+        best, seen = sorted(known, key=lambda each: known[each].change), []
         intervals = []
-        for (a, b) in [each.noble for each in best[:KEPT]]:
+        for a, b in best[:KEPT]:
             middle = a[0] + b[0], a[1] + b[1]
             intervals += [pair for pair in ((a, middle), (middle, b)) if pair not in intervals]
-    for orbit in best:                  # a number may belong to several intervals
-        if all(abs(orbit.rotation[0] - other.rotation[0]) > 1e-12 for other in seen):
-            seen.append(orbit)
-    return seen[:KEPT]
+    for interval in best:               # a number may belong to several intervals
+        orbit = known[interval]
+        if len(seen) < KEPT and all(abs(orbit.rotation[0] - other.rotation[0]) > 1e-12
+                                    for other in seen):
+            seen.append(orbit._replace(vector=noble(interval)))
+    return seen
 
 
 def _farey(order):
@@ -241,10 +262,16 @@ def _on_a_grid(orbits, target=None):
             width = np.repeat(width, CHILDREN, 0)
             near += width * (random.random(near.shape) - 0.5)
             p, width = np.concatenate([p, near]), np.concatenate([2 * width[::CHILDREN], width]) / 2
-    found = []
-    for w, size, start in zip(omega, change, p):
-        if all(abs(w - other.rotation).sum() > APART for other in found):
-            found.append(Orbit(tuple(w.tolist()), float(size), tuple(start.tolist())))
+    return _apart([Orbit(tuple(w.tolist()), float(size), tuple(start.tolist()))
+                   for w, size, start in zip(omega, change, p)], APART)
+
+
+def _apart(listed, least):
+    """Of orbits those whose rotation vectors differ so much from those listed before."""
+    found: List[Orbit] = []
+    for orbit in listed:
+        if all(abs(np.subtract(orbit.rotation, other.rotation)).sum() > least for other in found):
+            found.append(orbit)
     return found
 
 

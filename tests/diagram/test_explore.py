@@ -126,21 +126,22 @@ def test_nothing_is_overwritten(made, tmp_path):
 def test_the_command(input_file, tmp_path, capsys):
     path, picture = str(tmp_path / "mine.map"), str(tmp_path / "mine.svg")
     name = input_file({"k": ["1.2", "2"]})
-    assert cli.main([name, "-b", path, "-g", picture, "--budget", "0.01min"]) == 0
+    assert cli.main([name, "-b", path, "-g", picture, "--budget", "0.01min"]) == 3
     out, err = capsys.readouterr()
     assert err == "" and out.splitlines()[0] == "every k >= 1.2: no torus"
     assert "\nTHEOREM\n" in out and "Verify     converse-check " + path in out
     assert labels(out) <= explained() and "no torus" in open(picture).read()
     assert check.main([path, "--quiet"]) == 0
-    assert cli.main([path]) == 0
+    assert cli.main([path]) == 3
     assert capsys.readouterr().out.partition("\n") == (
         "THEOREM, of which 1 proof was read from a file that is believed", "\n",
         out[out.index("THEOREM") + 8:])
-    assert cli.main(["-r", path, name]) == 0 and cli.main(["-r", path]) == 0
+    assert cli.main(["-r", path, name]) == 3 and cli.main(["-r", path]) == 3
+    assert "k in [1.2, 2]; no torus was proved; between" in " ".join(out.split())
 
 
 def test_nothing_proved(input_file, capsys):
-    assert cli.main([input_file({"k": ["0.1", "0.2"]}), "--budget", "0.01"]) == 0
+    assert cli.main([input_file({"k": ["0.1", "0.2"]}), "--budget", "0.01"]) == 3
     assert "every k >= 2.0001" in capsys.readouterr().out       # by one point
     assert cli.main([input_file({"k": ["0.1", "0.2"], "b": ["0", "0.1"]}), "--budget", "1s"]) == 1
     assert capsys.readouterr().out.startswith("UNDECIDED: nothing is proved.\n")
@@ -201,6 +202,7 @@ def test_the_picture_of_a_line(tmp_path):
     assert "proved: no torus" in words and "seen, not proved" in words and "a torus" not in words
     axes = found.plot(diagram_figure.plot.new(4, 3, lambda figure: None).subplots())
     assert axes.get_xlabel() == "k" and axes.get_ylabel() == "rotation number"
+    assert axes.get_xlim()[1] == pytest.approx(1.5 * 1.2 * 1.02)        # not to 2: no torus there
     found.sides["above"] = F("2.5"), (F(1, 2), F(0)), (1, 0)        # beyond the range: no line
     axes = found.plot(diagram_figure.plot.new(4, 3, lambda figure: None).subplots())
     assert not any(patch.get_linewidth() for patch in axes.patches)

@@ -64,11 +64,38 @@ def test_values_that_are_seen_next_to_each_other_are_a_run():
     assert runs.runs() == [[0, F("0.1")], [F("0.3")]]
 
 
-def test_a_torus_is_first_proved_in_the_middle_of_a_run():
-    runs = runs_of({"0.1": None, "0.2": .2, "0.3": .2, "0.4": .2, "0.5": None})
-    assert runs._proofs() == [some.Task(F("0.3"), runs.sizes[0])]
-    runs.tried[F("0.3")] = runs.sizes[0]
-    assert runs._proofs() == [some.Task(F("0.3"), runs.sizes[1])]
+def test_the_first_torus_of_a_run_is_looked_for_above_its_middle():
+    runs = runs_of({"0": None, "0.1": None, "0.2": .2, "0.3": .2, "0.4": .2, "0.5": None})
+    small, *_, large = some.MESH[1]
+    assert runs._proofs() == [some.Task(F("0.4"), small)]
+    runs.tried[F("0.4")] = small
+    assert runs._proofs() == [some.Task(F("0.3"), small)]
+    runs.tried.update({F("0.3"): large, F("0.4"): large})
+    assert runs._proofs() == [some.Task(F("0.2"), small)]
+
+
+@pytest.mark.parametrize("last", [F("0.8"), F("0.55"), F("0.41")])
+def test_a_run_is_proved_up_to_the_last_value_that_can_be(monkeypatch, last):
+    """Tries fail beyond a value, which no look is near; with smaller meshes sooner."""
+    proved = [F(0)]
+    monkeypatch.setattr(some.Runs, "_proved", lambda self: proved)
+    runs = runs_of({"0": .2, "0.2": .2, "0.4": .2, "0.8": .2, "0.81": .2, "0.9": None})
+    for _ in range(60):
+        for value, size in runs._proofs():
+            if value <= last * size / some.MESH[1][-1]:
+                proved.append(value)
+            else:
+                runs.tried[value] = size
+    assert 0 <= last - max(proved) <= 3 * runs.grain and not runs._proofs()
+
+
+def test_the_grid_is_looked_at_before_a_torus_is_proved():
+    runs = some.Runs(Diagram.of(cosines(K1=(0, 1))), [])
+    while len(runs.looks) <= some.GRID[1]:
+        assert all(task.points == 0 for task in runs.round())
+        for task in runs.round():
+            runs.take(task, some.Outcome(1, (0.2,), None))
+    assert [task.points for task in runs.round()] == [some.MESH[1][0]] + [0] * some.LOOKS
 
 
 def test_nothing_is_looked_for_where_v_is_0():
@@ -87,8 +114,8 @@ def test_values_have_few_decimals():
 
 @pytest.mark.slow
 def test_there_are_circles_above_values_without_circles(tmp_path):
-    """Some 15 CPU seconds."""
-    found = diagram.explore(cosines(K1=("0.31", "0.45")), path=tmp_path / "two.map", budget=12,
+    """Some 45 CPU seconds."""
+    found = diagram.explore(cosines(K1=("0.31", "0.45")), path=tmp_path / "two.map", budget=45,
                             jobs=1)
     inside = [ends for ends in found.none if ends[0] <= F("0.315") <= ends[1]]
     assert inside and any(each.low > inside[0][1] for each in found.tori)
