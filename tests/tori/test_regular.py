@@ -9,7 +9,7 @@ from converse import FroeschleMap, MuldoonMap, StandardMap, SymplecticMap, tori
 from converse.tori.continuation import Found, Way
 from converse.tori.find import NotFound, find
 from converse.tori.newton import best_frame
-from converse.tori.regular import Orbits, _resonant, regular, with_rotation
+from converse.tori.regular import Orbits, _resonant, regular, with_rotation, with_vectors
 from converse.tori.rotation import read_rotation
 
 
@@ -99,3 +99,12 @@ def test_a_rotation_number_is_taken_near_a_place():
 def test_a_range_takes_the_vector_of_its_stronger_end():
     pieces = find(two_harmonics(("0.41", "0.42")))
     assert [torus.piece[0] for torus in pieces][0] == -1 and pieces[-1].piece[1] == 1
+
+
+@pytest.mark.slow
+def test_vectors_of_two_angles_are_ranked_by_their_orbits():
+    """Near break-up the vector with the best divisors near a regular orbit lies in a gap."""
+    orbits = Orbits(MuldoonMap(epsilon="0.011").potential())
+    first, *others = with_vectors(orbits, regular(orbits))
+    assert first.change < 5e-12 and first.vector.floats == first.rotation
+    assert all(other.change >= first.change for other in others)
