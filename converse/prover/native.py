@@ -220,7 +220,7 @@ def native_problem(problem, owners):
     owners.append(waves)
     ends = problem.v0, problem.v1
     return ffi.new("cv_problem *", {
-        "n_waves": len(problem.waves), "n_parameters": len(problem.parts), "waves": waves,
+        "n_waves": len(problem.terms), "n_parameters": len(problem.parts), "waves": waves,
         "angle": [text((low + high) / 2) for low, high in ends],
         "half": [text((high - low) / 2) for low, high in ends],
         "shift": [[text(pair[i]) for pair in problem.shifts] for i in range(2)],

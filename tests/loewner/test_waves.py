@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import mpmath
 import pytest
 
+from converse.model.potential import Term
 from converse.prover.native import ffi, lib, native_problem
 from converse.prover.tree import cells
 
@@ -520,11 +521,11 @@ def test_a_wave_that_one_parameter_alone_moves_is_there(parameters, moved_by):
 
 def patch_of(waves, amplitude, parts=(), frame=(1, 0, 0, 1), odd=True, v0=(0, 2), v1=(0, 2),
              shifts=()):
-    return SimpleNamespace(
-        waves=tuple((*w[:2], Fraction(w[2]) if len(w) > 2 else Fraction(0)) for w in waves),
-        amplitude=tuple(map(Fraction, amplitude)), frame=frame, odd=odd or None,
-        parts=tuple(tuple(map(Fraction, g)) for g in parts), v0=v0, v1=v1,
-        searched=range(len(waves)), shifts=shifts)
+    terms = tuple(Term(w[:2], Fraction(w[2] if len(w) > 2 else 0), Fraction(p),
+                       tuple(map(Fraction, g)))
+                  for w, p, *g in zip(waves, amplitude, *parts))
+    return SimpleNamespace(terms=terms, searched=terms, parts=parts, frame=frame, odd=odd or None,
+                           v0=v0, v1=v1, shifts=shifts)
 
 
 def searched(patch, xstar=None, leaves=20000):
