@@ -22,7 +22,7 @@ from .torus import Torus, family
 
 __all__ = ["NotFound", "find"]
 
-ENOUGH = 3                  # From so many tori the one is chosen that needs the fewest points.
+ENOUGH = 3                  # From so many tori the one is chosen that needs the fewest modes.
 ROUNDS = 3                  # This often the number of modes is chosen.
 # The lengths of pieces are chosen for DEGREE in sigma; they have LEAST_DEGREE to MOST_DEGREE.
 LEAST_DEGREE, DEGREE, MOST_DEGREE = 4, 21, 26
@@ -45,7 +45,7 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str, N
         The map; one parameter may have a range.
     rotation : Rotation or str, optional
         The rotation vector, or its text as read_rotation takes it, or decimals as for `near`.  By
-        default the one whose torus needs the fewest points among those of the most regular orbits,
+        default the one whose torus needs the fewest modes among those of the most regular orbits,
         with a range at the end where V is larger.
     near : sequence of number, optional
         In the place of `rotation`, one or two components in turns: the rotation vector is
@@ -196,7 +196,7 @@ class Search:
                                              found == TOO_LARGE)), 0.0, self.amplitude(s))
 
     def most_regular(self) -> Tuple[Way, Found]:
-        """Of the tori of the most regular orbits the one that needs the fewest points."""
+        """Of the tori of the most regular orbits the one that needs the fewest modes."""
         s = self._end()
         if self.part is not None and abs(self.amplitude(1)).sum() > abs(self.amplitude(-1)).sum():
             s = 1
@@ -209,7 +209,7 @@ class Search:
         return best
 
     def seen(self, s: int) -> Tuple[List[Orbit], Optional[Tuple[Way, Found]]]:
-        """The most regular orbits, and of their tori the one that needs the fewest points."""
+        """The most regular orbits, and of their tori the one that needs the fewest modes."""
         orbits = self._orbits(s)
         self.tell("looking for regular orbits at %s" % place(self.at(s), self.amplitude(s)))
         made: List[Tuple[Way, Found]] = []
@@ -224,8 +224,7 @@ class Search:
                 pass
             if len(made) == ENOUGH:
                 break
-        return seen, min(made, key=lambda each: plan(each[1]).mesh(each[1].mesh).points,
-                         default=None)
+        return seen, min(made, key=lambda each: plan(each[1]).modes(each[1].mesh), default=None)
 
 
 def _doubles(numbers):

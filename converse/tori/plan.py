@@ -68,6 +68,11 @@ class Plan(NamedTuple):
         return mesh.inside & (self.length(mesh.k) <= ROOM * self.reach(mesh)) \
             & (abs(mesh.k).max(0) > 0)
 
+    def modes(self, like: Mesh) -> int:
+        """About how many modes matter.  Meshes are rounded up, and a torus is pruned in the end."""
+        mesh = self.mesh(like)
+        return int((self.length(mesh.k) <= self.size).sum())
+
     def bits(self, k: np.ndarray, degree: int, margin: float) -> int:
         """The bits of the coefficients of modes k, for each power of sigma.  Cutting them to these
         bits changes ||E||_rho by less than needed/margin/16."""

@@ -9,6 +9,7 @@ from converse import FroeschleMap, MuldoonMap, StandardMap, SymplecticMap, tori
 from converse.tori.continuation import Found, Way
 from converse.tori.find import NotFound, find
 from converse.tori.newton import best_frame
+from converse.tori.plan import plan
 from converse.tori.regular import Orbits, _resonant, regular, with_rotation, with_vectors
 from converse.tori.rotation import read_rotation
 
@@ -84,6 +85,22 @@ def test_the_frame_follows_the_decay():
         row = np.array(frame) @ k
         assert best_frame(k, np.exp(-0.3 * abs(row[0]) - 1.5 * abs(row[1]))) in (
             frame, frame[::-1])
+
+
+def test_of_tori_on_equal_meshes_the_one_of_the_fewest_modes_is_taken(monkeypatch):
+    made, of_orbit = [], Way.of_orbit
+
+    def recorded(way, *given):
+        found = of_orbit(way, *given)
+        aim = plan(found)
+        made.append((aim.modes(found.mesh), aim.mesh(found.mesh).points, way.rotation))
+        return found
+
+    monkeypatch.setattr(Way, "of_orbit", recorded)
+    rotation = find(StandardMap("0.85")).rotation
+    modes, points, vectors = zip(*made)
+    assert len(modes) == 3 and len(set(modes)) == 3 and len(set(points)) == 1
+    assert rotation == vectors[modes.index(min(modes))] != vectors[0]
 
 
 def test_a_rotation_number_is_taken_near_a_place():
