@@ -1,6 +1,7 @@
 """The figure of a diagram: SVG, PNG or PDF, by matplotlib."""
 
 from fractions import Fraction
+from math import inf
 
 from . import plot
 
@@ -33,6 +34,10 @@ def _line(diagram, axes):
 
     for n, ends in enumerate(diagram.none):
         fill(ends, NONE, NO_TORUS if n == 0 else None)
+        for at, end, arrow in ((0, ends[0], "<"), (1, ends[1], ">")):
+            if abs(end) == inf and place(ends[0]) < place(ends[1]):     # all beyond the axes
+                axes.plot(at, (BAR + 1) / 2, arrow, color=NONE, markersize=12, clip_on=False,
+                          transform=axes.transAxes)
     for n, torus in enumerate(diagram.tori):
         fill(torus[:2], plot.GREEN, TORUS if n == 0 else None)
         for omega in _folded(torus.rotation.floats):

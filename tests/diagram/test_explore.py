@@ -203,9 +203,11 @@ def test_the_picture_of_a_line(tmp_path):
     axes = found.plot(diagram_figure.plot.new(4, 3, lambda figure: None).subplots())
     assert axes.get_xlabel() == "k" and axes.get_ylabel() == "rotation number"
     assert axes.get_xlim()[1] == pytest.approx(1.5 * 1.2 * 1.02)        # not to 2: no torus there
+    assert [line.get_marker() for line in axes.lines if not line.get_clip_on()] == [">"]
     found.sides["above"] = F("2.5"), (F(1, 2), F(0)), (1, 0)        # beyond the range: no line
     axes = found.plot(diagram_figure.plot.new(4, 3, lambda figure: None).subplots())
     assert not any(patch.get_linewidth() for patch in axes.patches)
+    assert all(line.get_clip_on() for line in axes.lines)           # and no arrow
 
 
 def test_rotation_numbers_are_folded():
