@@ -58,9 +58,14 @@ def _grounds(diagram, tori, file):
             "no %s was proved" % words for found, words in sides
             if not found and len(diagram.ranges) == 1)])
     if len(diagram.ranges) == 1:
-        yield "Open", "; ".join(whole("%s < %s < %s" % (
-            exact_text(low), *diagram.names, exact_text(high))) for low, high in diagram.open
-            ) or "nothing"
+        proved = [*diagram.none, *(each[:2] for each in diagram.tori)]
+
+        def sign(end):                  # an end of the range may itself be open
+            return "<" if any(low <= end <= high for low, high in proved) else "<="
+
+        yield "Open", "; ".join(whole(" ".join((
+            exact_text(low), sign(low), *diagram.names, sign(high), exact_text(high))))
+            for low, high in diagram.open) or "nothing"
     else:
         yield "Open", "%.2f %% of the rectangle" % (100 * _open_share(diagram))
     for each in diagram.seen:
