@@ -55,8 +55,8 @@ def parser():
         "continue the diagram in FILE, with a larger --budget"))
     p.add_argument("--budget", type=_budget, metavar="TIME", help=(
         "of the work of all runs on the diagram, in seconds, min or h of one core, about: it "
-        "stands for a number of points of orbits, so that the result is the same on each machine "
-        "(default: 5min)"))
+        "stands for a number of points of orbits, so that --jobs and the machine's speed do not "
+        "change the result (default: 5min)"))
     p.add_argument("-g", "--graphics", metavar="FILE",
                    help="draw the diagram: SVG, PNG or PDF by name")
     add_worker_options(p, "parts of the range")

@@ -52,10 +52,10 @@ def _grounds(diagram, tori, file):
         yield "Verify", verify_text(file, "diagram")
     for words, rotation in tori:
         yield "Rotation", "%s: %s" % (words, rotation_text(rotation))
-    sides = ((diagram.none, "absence of tori"), (tori, "torus"))
+    searched = ((diagram.none, "absence of tori"), (tori, "torus"))
     yield "Searched", "%s; between proved values nothing is proved" % "; ".join([
         box_words(diagram.names, diagram.ranges), *(
-            "no %s was proved" % words for found, words in sides
+            "no %s was proved" % words for found, words in searched
             if not found and len(diagram.ranges) == 1)])
     if len(diagram.ranges) == 1:
         proved = [*diagram.none, *(each[:2] for each in diagram.tori)]
@@ -72,8 +72,10 @@ def _grounds(diagram, tori, file):
         yield "Seen", "%s: a torus, not proved, rotation %s" % (
             box_words(diagram.names, [(x, x) for x in each.value]),
             ", ".join("%.9g" % x for x in each.rotation))
-    yield "Proofs", "%d of no torus, %d of tori; %s points of orbits, %.0f s" % (
-        len(diagram.members) - len(tori), len(tori), format(diagram.points, ","), diagram.seconds)
+    sides = ", and %d by one point of the torus each" % len(diagram.sides)
+    yield "Proofs", "%d of no torus%s, %d of tori; %s points of orbits, %.0f s" % (
+        len(diagram.members) - len(tori), sides * bool(diagram.sides), len(tori),
+        format(diagram.points, ","), diagram.seconds)
     if diagram.sha256:
         yield "SHA-256", diagram.sha256
 
