@@ -143,8 +143,9 @@ def refined(torus: Torus, modes: Modes, plan: Plan, margin: float,
         if error is None:
             error = list(errors(mesh, torus, layers, weights > 0, max(64, torus.bits + SPARE_BITS)))
         v, size, rest, known = _corrected(torus, modes, error, weights, amplitudes, layers, enough)
-        if v is not None:
-            torus = replace(torus, numbers=torus.numbers + numbers_of(v, torus.bits))
+        if v is None:                   # the error of the same torus would be the same
+            break
+        torus = replace(torus, numbers=torus.numbers + numbers_of(v, torus.bits))
         most = accepted(margin) * plan.needed
         if size - rest <= enough or size <= most or not size < before / 4 \
                 or rest > most and not last:
