@@ -98,7 +98,7 @@ def _check_type(potential, vector):
 
 
 def parser():
-    p = Parser(prog=COMMAND, epilog=ENDING, description=(
+    p = Parser(prog=COMMAND, left="find", epilog=ENDING, description=(
         "Finds periodic orbits of least action of the map x' = x + p', p' = p - eps grad V(x), "
         "all of one type, by continuation from eps 0, and prints their properties.  Angles have "
         "period 1; those of an input file, and of its results, have period 2 pi."))

@@ -248,7 +248,8 @@ def test_help_and_version(run):
     (["DIR/terms.json", SMALL, "0.01", "--at", "K=1"], "there is no parameter K"),
     (["DIR/terms.json", SMALL, "0.01", "--at", "K"], "write NAME=NUMBER"),
     (["trig", "5,7/999999999", "0.01"], "whole number q from 1 to 10000000, not"),
-    (["figures", "DIR"], "invalid choice"),
+    (["find", "trig", SMALL, "0.01"],
+     "leave out 'find': converse-orbits trig %s 0.01;" % SMALL),
 ])
 def test_bad_usage(run, tmp_path, arguments, words):
     (tmp_path / "terms").write_text("1 0 0 1\n")
