@@ -1,7 +1,7 @@
 """The report of a diagram: its theorem in the parameters of the family, and what is open."""
 
 from ..check import box_words, exact_text
-from ..model.exact import decimal_text, rounded
+from ..model.exact import decimal_text, rounded, rounded_text
 from ..model.problem import Problem
 from ..model.statement import TORUS, ended, indented, labelled, map_lines, whole
 from ..storage.kept import headline, verify_text
@@ -67,7 +67,8 @@ def _grounds(diagram, tori, file):
             exact_text(low), sign(low), *diagram.names, sign(high), exact_text(high))))
             for low, high in diagram.open) or "nothing"
     else:
-        yield "Open", "%.2f %% of the rectangle" % (100 * _open_share(diagram))
+        yield "Open", "%s %% of the rectangle" % rounded_text(
+            100 * _open_share(diagram), 3, up=True)
     for each in diagram.seen:
         yield "Seen", "%s: a torus, not proved, rotation %s" % (
             box_words(diagram.names, [(x, x) for x in each.value]),
@@ -85,7 +86,7 @@ def _open_share(diagram):
     def area(low, high):
         return (high[0] - low[0]) * (high[1] - low[1])
 
-    return float(sum(area(*box) for box in diagram.open) / area(*zip(*diagram.ranges)))
+    return sum(area(*box) for box in diagram.open) / area(*zip(*diagram.ranges))
 
 
 def rotation_text(rotation):

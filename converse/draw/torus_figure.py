@@ -6,7 +6,7 @@ import textwrap
 
 import numpy as np
 
-from ..model.exact import rounded_text
+from ..model.exact import range_text, rounded_text
 from ..storage import files
 from . import plot
 from .plot import BLUE, DARK, GREY, VERMILLION
@@ -81,11 +81,9 @@ def _title(tori, width, proved):
     """The title, in lines of at most `width` characters."""
     first = tori[0]
     text = "rotation %s: %s" % ("vector" if first.dimension > 1 else "number", first.rotation)
-    amplitudes = [[float(p + s * q) for p, q in zip(
-        first.potential.amplitude, first.part or [0] * len(first.potential.amplitude))]
-        for s in (_s(tori)[0], _s(tori)[-1])]
-    ranges = ["%.6g" % low if low == high else "%.6g to %.6g" % (low, high)
-              for low, high in zip(*amplitudes)]
+    ranges = [range_text(*sorted(p + s * q for s in (first.piece[0], tori[-1].piece[1])))
+              for p, q in zip(first.potential.amplitude, first.part or
+                              [0] * len(first.potential.amplitude))]
     text = "%s; amplitude%s %s" % (text, "s" * (len(ranges) > 1), ", ".join(ranges))
     if len(proved) == 1:
         text += "; error of the invariance equation at most %s, admissible %s" % (

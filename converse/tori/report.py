@@ -119,7 +119,7 @@ def _grounds(proof: ProvedTorus, worst: Piece,
     yield "Residual", "%s, admissible: %s" % (_up(worst.residual), _down(worst.needed))
     assert worst.torus.strip is not None
     yield from _divisors(worst, worst.torus.strip)
-    yield "Strip", "rho = %.6g" % worst.torus.strip.rho
+    yield "Strip", "rho = %s" % _down(worst.torus.strip.rho, 6)
     yield "Constants", ", ".join("%s0 = %s" % (name, _up(getattr(worst.constants, name), 4))
                                  for name in "lmabp")
     yield "Torus", "%s modes of %d bits%s" % (

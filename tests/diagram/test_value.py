@@ -151,7 +151,13 @@ def test_two_parameters(tmp_path):
     again = Diagram.load(tmp_path / "plane")
     assert again.none == found.none and again.family == found.family and again.verify()
     assert "every k in [1.5, 2], every b in [0, 1]" in found.report()
-    assert "Open       75.00 % of the rectangle" in found.report()
+    assert "Open       75.0 % of the rectangle" in found.report()
+
+
+def test_the_share_that_is_open_is_rounded_up():
+    found = Diagram.of(FroeschleMap((0, 3), (0, 1)))
+    found.add(prove(found.over(((F("1.5"), F(2)), (F(0), F(1))))))
+    assert "Open       83.4 % of the rectangle" in found.report()
 
 
 def test_larger_multiples_of_two_parameters():

@@ -62,6 +62,18 @@ def test_what_is_needed_and_what_was_reached_is_shown():
     assert "at most 1.00e-11, admissible 1.00e-8" in title
 
 
+def test_the_amplitudes_of_a_title_are_those_of_the_torus():
+    """To all digits, since no torus is proved beyond them."""
+    for amplitude, part, words in (("0.12345678", None, "amplitude 0.12345678"),
+                                   ("0.12345678", "0.00000001", "amplitude 0.12345677..0.12345679"),
+                                   ("0.12345678", "-0.00000001",
+                                    "amplitude 0.12345677..0.12345679")):
+        tori = [torus(FourierSum(((1, 0, NONE),), (Fraction(amplitude),), 1),
+                      part and (Fraction(part),), {(1,): ((1, 0), (1, 0))},
+                      *[(Fraction(-1), Fraction(1))] * bool(part))]
+        assert torus_figure._title(tori, 500, ()).endswith(words)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("proof", [ONE, TWO, RANGE], ids=["one angle", "two angles", "a range"])
 def test_the_same_picture_is_the_same_file(proof):

@@ -180,6 +180,12 @@ def test_a_strip_that_does_not_suit_proves_nothing(circle, rho, words):
         prove(changed(circle, strip=circle.strip._replace(rho=rho)))
 
 
+def test_the_width_of_a_strip_is_rounded_down(circle):
+    """The series is bounded in the strip of the certificate, and in no wider one."""
+    strip = circle.strip._replace(rho=Q("0.12345678"))
+    assert "rho = 0.123456\n" in prove(changed(circle, strip=strip)).report()
+
+
 # ---- ranges
 
 RANGE = Problem(SymplecticMap([(1, 0)], ["0.3"], [["0.2"]]))
