@@ -127,7 +127,7 @@ class Counts:
     linked: int = 0
 
     @property
-    def decided(self):
+    def decided(self) -> int:
         """How many prisms are leaves, but for linked ones."""
         return self.proved + self.symmetric + self.undecided
 

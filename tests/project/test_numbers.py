@@ -227,7 +227,7 @@ def test_lines(page, files):
 
 def test_what_a_referee_reads():
     """The modules of the exact path import each other alone, and are short."""
-    text, count = re.search(r"reads the exact path: (.*?), in this order, ([0-9,]+) lines",
+    text, count = re.search(r"reads the exact path: (.*?), in this order, ([0-9,]+)\s+lines",
                             PAGES["checker.md"], re.DOTALL).groups()
     modules = re.findall("`([a-z_]+)`", text)
     sources = [(ROOT / "converse" / "check" / (name + ".py")).read_text("utf-8")
