@@ -39,8 +39,8 @@ def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = No
         Whether the diagram of the file is continued.
     budget
         Of the work of all runs together, in seconds of one core, about: it stands for
-        POINTS_A_SECOND points of orbits a second.  So the result does not depend on the speed of the
-        machine; the modes of a torus may differ by some per cent between processors.
+        POINTS_A_SECOND points of orbits a second.  So the result does not depend on the machine's
+        speed; the modes of a torus may differ by some per cent between processors.
     jobs, executor
         The number of tasks at a time, by default one per core; the executor that works on them, by
         default threads of this process.  The result does not depend on them.
