@@ -39,9 +39,9 @@ def place(xstar, v0, v1, name, count=0):
 
 def parse_part(letter, text, claim):
     """A part of a claim, of this letter or number, from what follows `part: `: four lines and a
-    tree."""
+    tree, of which nothing is there before its search begins."""
     name, found = "part " + letter, re.match(
-        letter + "\nxstar: (.*)\nv0: (.*)\nv1: (.*)\ntree:\n", text)
+        letter + "\nxstar: (.*)\nv0: (.*)\nv1: (.*)\ntree:(?:\n|$)", text)
     if not found:
         raise Rejected("%s is not 'part: %s', xstar, v0, v1 and a tree, each on its line"
                        % (name, letter))

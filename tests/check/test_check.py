@@ -270,7 +270,7 @@ def test_the_theorem_is_stated_in_the_named_parameters(run, tmp_path):
                                                        else "+ " + force) in out
         assert (status, out.count("for any parameters with\n" + ends)) == (0, 1)
     for line, why in (
-            ("\033k 2.5 3", "not a name"), ("k\u202e 2 3", "not a name"), ("J 2 3", "not a name"),
+            ("\033k 2.5 3", "a control character"), ("k\u202e 2 3", "not a name"), ("J 2 3", "not a name"),
             ("k 2.5", "not a name of a parameter and two numbers"), ("k 2.5 nan", "not a decimal"),
             ("k 3 3", "has one value"), ("k 2 3\nparameter: l 2 3", "each parameter once"),
             ("k 2 " + "3" * 3001, "limit")):
@@ -809,7 +809,7 @@ def test_the_format_names_what_the_checker_knows(root, texts, monkeypatch):
     fields = (root / "docs/reference/map-file.md").read_text(encoding="utf-8")
     names = re.findall("(?m)^\\| ((?:`[a-z]+`,? ?)+) \\|", fields.partition("## What")[0])
     assert set(re.findall("`([a-z]+)`", " ".join(names))) == (
-        check.DIAGRAM_FIELDS | check.DIAGRAM_OPTIONAL)
+        check.DIAGRAM.needed | check.DIAGRAM.optional)
     for value in (check.MAX_CHARACTERS, check.MAX_CUTS, check.MAX_BITS, check.MAX_SITES,
                   check.MAX_PIECES, check.MAX_HALVINGS):
         assert re.search("\\b{:,}\\b".format(value), page[page.index("limits: "):])

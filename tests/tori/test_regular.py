@@ -73,7 +73,7 @@ def test_an_orbit_and_continuation_lead_to_the_same_torus(source, rotation):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("source, modes", [(FroeschleMap("0.45", "0.1"), 40000)])
+@pytest.mark.parametrize("source, modes", [(FroeschleMap("0.45", "0.1"), 45000)])
 def test_tori_of_two_angles_are_found(source, modes):
     torus = find(source)
     assert torus.dimension == 2 and len(torus.k) < modes
