@@ -42,7 +42,7 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 # Files that `make check` leaves out, except tests marked quick.
 SLOW = ("check/test_check", "check/test_fuzz", "commands/test_orbits_cli", "formal/",
         "project/test_chart", "project/test_install", "project/test_mutate",
-        "project/test_numbers", "project/test_sides", "project/test_types", "project/test_vectors",
+        "project/test_numbers", "project/test_sides", "project/test_types",
         "project/test_where_methods_fail", "prover/test_parallel", "storage/")
 
 # Of the cases of one test `make check` takes 4 at most, the first, the last and two between.

@@ -256,6 +256,7 @@ assert all(seen.values())
 
 @needs_gcc
 @pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="asan has its own malloc")
+@pytest.mark.slow
 def test_every_allocation_may_fail(tmp_path):
     """The core returns an error wherever memory runs out, and what it had decided stands."""
     (tmp_path / "failing.c").write_text(FAILING)

@@ -270,7 +270,8 @@ def test_the_theorem_is_stated_in_the_named_parameters(run, tmp_path):
                                                        else "+ " + force) in out
         assert (status, out.count("for any parameters with\n" + ends)) == (0, 1)
     for line, why in (
-            ("\033k 2.5 3", "a control character"), ("k\u202e 2 3", "not a name"), ("J 2 3", "not a name"),
+            ("\033k 2.5 3", "a control character"), ("k\u202e 2 3", "not a name"),
+            ("J 2 3", "not a name"),
             ("k 2.5", "not a name of a parameter and two numbers"), ("k 2.5 nan", "not a decimal"),
             ("k 3 3", "has one value"), ("k 2 3\nparameter: l 2 3", "each parameter once"),
             ("k 2 " + "3" * 3001, "limit")):

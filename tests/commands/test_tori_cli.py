@@ -134,6 +134,7 @@ MINE = """{"parameters": {"K1": ["%s", "%s"]}, "harmonics": [
 
 @pytest.mark.parametrize("rotation", [[], ["--rotation", "0.2372"],
                                       ["--rotation", "[0; 4, 4, 1, ...]"]])
+@pytest.mark.slow
 def test_a_circle_beyond_a_gap_is_proved(run, tmp_path, rotation):
     """At K1 = 0.30 there is none, and none is found."""
     problem = tmp_path / "mine.json"

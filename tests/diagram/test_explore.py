@@ -58,6 +58,7 @@ def test_proofs_and_open_cells_are_all_of_the_range(made):
     assert sum(map(area, waiting)) == sum(map(area, found.open))
 
 
+@pytest.mark.slow
 def test_the_checker_confirms_it(made):
     result = check.verify(made[1])
     assert result and labels(result.text) <= explained()

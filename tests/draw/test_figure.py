@@ -328,6 +328,7 @@ def test_what_is_said_of_other_problems(made_up):
 
 
 @pytest.mark.parametrize("backend", ["nonsense", "module://no_such_backend.backend_inline"])
+@pytest.mark.slow
 def test_figures_need_no_backend(backend, root, tmp_path):
     """Jupyter names its own to the programs in its terminals, where it may not be installed."""
     pytest.importorskip("matplotlib")

@@ -157,6 +157,7 @@ def displacements(rng, cases):
         yield prism, measured, [[*map(mp, row)] for row in (rest, off, reach)]
 
 
+@pytest.mark.slow
 def test_orbits_stay_within_reach():
     followed = tight = bowed = 0
     for prism, measured, bounds in displacements(rng_for("loewner orbits"), CASES // 4):

@@ -642,6 +642,7 @@ def test_why_a_search_ended_is_a_value(source, options, why, tmp_path):
         assert "larger parameters" not in text
 
 
+@pytest.mark.slow
 def test_a_range_with_circles_is_given_up_within_seconds(monkeypatch, tmp_path):
     """Cuts around the circles would go on for hours.  The end and its reason are saved, and the
     checker knows the field; a stubborn search goes on."""
@@ -667,6 +668,7 @@ def test_where_a_search_is_given_up_does_not_depend_on_when_it_is_looked_at(monk
     assert proof.tree == prove(resume=proof, jobs=1).tree
 
 
+@pytest.mark.slow
 def test_whether_long_orbits_help_is_asked_once(monkeypatch, tmp_path):
     """A continued run has the answer, from the proof or from its file."""
     asked, path = [], tmp_path / "a.proof"

@@ -148,6 +148,7 @@ def test_undecided_by_the_sharper_method(made_up, tree, words):
     assert "THEOREM" not in text and "has no" not in text and "Verify" not in text
 
 
+@pytest.mark.slow
 def test_where_x_star_may_be_the_cause(monkeypatch):
     """For these two harmonics another x* proves it (docs/explanation/method.md), as it does where
     several are not linked; a lack of depth is another thing."""

@@ -19,6 +19,7 @@ def two_harmonics(K1, name="K1"):
 
 
 @pytest.mark.parametrize("K1", ["0.207", "0.212", "0.42", "0.575"])
+@pytest.mark.slow
 def test_circles_are_found_beyond_the_gaps(K1):
     torus = find(two_harmonics(K1))
     w, = torus.rotation.floats
