@@ -31,6 +31,10 @@ PROOF, MODE = {1: 2_200_000, 2: 50_000_000}, 400
 FAILURE, POINT = {1: 2_200_000, 2: 35_000_000}, {1: 24, 2: 50}
 
 
+class _Stopped(Exception):
+    """A task ends before its time."""
+
+
 class Task(NamedTuple):
     """A value to look at, or with points > 0 to prove a torus at, on a mesh of so many points."""
 
@@ -60,14 +64,19 @@ def attempt(family: SymplecticMap, task: Task, stop: Callable[[], bool] = bool
     stop
         stop() tells whether to end soon.
     """
-    if stop():
-        return None
+    def step(_=""):
+        if stop():
+            raise _Stopped
+
     n = family.dimension
-    if not task.points:
-        best = next(iter(regular(Orbits(potential_of(family)[0]))), None)
-        return Outcome(LOOK[n], best.rotation if best and best.change < SEEN else None, None)
     try:
-        torus = prove(family, points=task.points)
+        step()
+        if not task.points:
+            best = next(iter(regular(Orbits(potential_of(family)[0]))), None)
+            return Outcome(LOOK[n], best.rotation if best and best.change < SEEN else None, None)
+        torus = prove(family, points=task.points, progress=step)
+    except _Stopped:
+        return None
     except ConverseError:               # not found, or not confirmed
         return Outcome(FAILURE[n] + POINT[n] * task.points, None, None)
     return Outcome(PROOF[n] + MODE * torus.worst.modes, None, torus)

@@ -105,6 +105,18 @@ def test_nothing_is_looked_for_where_v_is_0():
     assert none.exclude(family, family, [], 2000)[1:] == (None, None)
 
 
+def test_a_try_at_a_torus_ends_at_the_step_after_it_is_told_to():
+    """Two angles may take minutes, and Ctrl-C waits for the try."""
+    family, asked = FourierMap({1: "0.9"}), []
+    assert some.attempt(family, some.Task(F(0), 1 << 15), lambda: asked.append(1) or False).torus
+    steps = len(asked)
+    for last in 1, steps // 2, steps:
+        asked.clear()
+        assert some.attempt(family, some.Task(F(0), 1 << 15),
+                            lambda: asked.append(1) or len(asked) == last) is None
+        assert len(asked) == last
+
+
 def test_values_have_few_decimals():
     assert some.nice(F(1, 3), F(1, 100)) == F("0.33")
     assert some.nice(F(0), F(1, 100)) == 0 and some.nice(F("0.5"), F(1, 10)) == F("0.5")
