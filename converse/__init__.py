@@ -6,6 +6,7 @@
     torus = converse.tori.prove(converse.StandardMap("0.9"), "golden")
 """
 
+from . import results  # noqa: F401
 from .version import __version__
 
 TYPE_CHECKING = False           # as in typing, whose import would delay the handlers of signals

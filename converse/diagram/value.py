@@ -11,6 +11,7 @@ from ..model.exact import Ends, exact, is_decimal
 from ..model.map import SymplecticMap
 from ..storage.files import ConverseError, Path
 from ..storage.kept import Kept, program_of, sealed
+from ..storage.methods import provided
 from ..version import __version__
 
 if TYPE_CHECKING:
@@ -323,8 +324,7 @@ class Diagram(Kept):
         ConverseError
             matplotlib is missing.
         """
-        from ..draw import diagram_figure
-        return diagram_figure.draw(self, None, ax)
+        return provided("Diagram.plot")(self, None, ax)
 
     def to_dict(self) -> Dict[str, Any]:
         """The results as plain data, for JSON: numbers are texts, exact; "inf" is infinity."""

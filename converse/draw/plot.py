@@ -150,8 +150,11 @@ def single(size, fill, path=None, ax=None, dpi=200):
     return ax
 
 
-def page(proof, caption=True):
-    """A Figure that a notebook shows; with a caption, above it what is proved and by what."""
+def page(proof, caption=True, ax=None):
+    """A Figure that a notebook shows; with a caption, above it what is proved and by what.  With
+    Axes the prisms are drawn there."""
+    if ax is not None:
+        return draw(proof, ax)
     check()
     from matplotlib.ticker import MaxNLocator
 

@@ -33,8 +33,10 @@ def picture(tori, kind="png", proved=()):
                         "constrained")
 
 
-def page(tori, proved=()):
-    """The picture as a Figure that a notebook shows."""
+def plotted(tori, ax=None, proved=()):
+    """The picture as a Figure that a notebook shows, or the tori drawn into Axes."""
+    if ax is not None:
+        return into(ax, tori)
     return plot.new(*_size(tori, proved), lambda figure: _fill(figure, tori, proved),
                     "constrained")
 

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any, Optional, Tuple
 
+from ..storage.methods import provided
 from .exact import whole_number
 
 if TYPE_CHECKING:
@@ -147,8 +148,7 @@ class Dynamics:
         ConverseError
             matplotlib is missing.
         """
-        from ..orbits.portrait import portrait
-        return portrait(self, eps, y, J, _steps(steps), plane, ax, style)
+        return provided("SymplecticMap.portrait")(self, eps, y, J, _steps(steps), plane, ax, style)
 
     def _points(self, y, J, eps):
         """y and J as arrays of one shape, (..., n) or, with one angle, any."""

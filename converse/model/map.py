@@ -13,6 +13,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Dict, Mapping, Sequence, Tuple, Union
 
+from ..storage.methods import provided
 from .dynamics import Dynamics
 from .exact import (Ends, Number, decimal_text, exact, integer, is_decimal, is_integer, number_text,
                     outward, pi_bounds, range_text, short_text)
@@ -120,8 +121,7 @@ class SymplecticMap(Dynamics):
         source
             As of converse.read_input, with the same errors.
         """
-        from .inputs import read_input
-        return read_input(source).map
+        return provided("SymplecticMap.read")(source).map
 
     def _key(self):
         middle, parts = self.patch

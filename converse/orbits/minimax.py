@@ -14,20 +14,18 @@ largest of these minima; where they depend on it continuously, the state there i
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Callable, Optional, Tuple
+from typing import Any, Callable, Optional, Tuple
 
 import numpy as np
 
 from ..storage.files import ConverseError
+from ..storage.methods import provided
 from .limits import (ACTION_ROUNDING, EIGENVALUE_ROUNDING, HELD_STEPS, MAX_HELD, MAX_HELD_GRADIENT,
                      MAX_NESTED_JUMPS, MAX_PASS_SHADOW, MAX_POLISH_STEPS, MAX_SHADOW, MIN_JUMP,
                      MIN_SLOPE, ORDER_TOLERANCE, PASS_BISECTIONS, PASS_STOPS)
 from .proved import balls
 from .solver import newton
 from .state import PeriodicOrbit, descended, expected, vector_words
-
-if TYPE_CHECKING:
-    from .proved_pair import ProvedPair
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +88,7 @@ class Pair:
                              "of action, .barrier")
 
     def prove(self, digits: Optional[int] = None,
-              progress: Optional[Callable[[int, int], object]] = None) -> "ProvedPair":
+              progress: Optional[Callable[[int, int], object]] = None) -> Any:
         """Proves both orbits, and encloses the difference of their actions to ten digits at least.
 
         Parameters
@@ -111,8 +109,7 @@ class Pair:
             With a reason.
         """
         balls()
-        from .proved_pair import prove_pair
-        return prove_pair(self, digits, progress)
+        return provided("Pair.prove")(self, digits, progress)
 
 
 def gap_of(pair):

@@ -16,6 +16,7 @@ import numpy as np
 from ..model.exact import Interval, rounded, rounded_text
 from ..model.potential import per_period, product
 from ..storage.files import ConverseError
+from ..storage.methods import provided
 from .limits import (DEFAULT_DIGITS, EIGENVALUE_ROUNDING, EXPONENT_PLACES, GUARD_PLACES,
                      LEAST_RATIO, LEAST_SHARE, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
                      MAX_SHADOW, MIN_LEAST_GUESS, NULL_EIGENVALUE, SHOWN_PLACES)
@@ -121,8 +122,7 @@ class ProvedOrbit:
         ax
             As of PeriodicOrbit.plot.
         """
-        from .pictures import figure
-        return figure(self, ax)
+        return provided("PeriodicOrbit.plot")(self, ax)
 
     def report(self) -> str:
         """The theorem in words."""

@@ -30,6 +30,16 @@ def _numbers(values):
     return ", ".join("%.10g" % x for x in values)
 
 
+def of_state(state):
+    """See PeriodicOrbit.report."""
+    return header(state) + report(state)
+
+
+def of_family(family):
+    """See Family.report."""
+    return header(family[0]) + "\n" + "\n".join(map(report, family)) if len(family) else ""
+
+
 def report(state):
     """The lines of one state."""
     lines = [

@@ -9,6 +9,7 @@ from typing import Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tu
 import numpy as np
 
 from ..storage.files import ConverseError
+from ..storage.methods import provided
 from .limits import (MAX_DISPLACEMENT, MAX_EPS_STEPS, MAX_STEP_DIVISOR, MIN_CURVATURE,
                      NEWTON_GRADIENT, STEP_TIMES_CURVATURE)
 from .potential import Numerators, Source, finite, known, told
@@ -87,8 +88,7 @@ class Family:
 
     def report(self) -> str:
         """What doubles show of each state, in lines."""
-        from .report import header, report
-        return header(self[0]) + "\n" + "\n".join(map(report, self)) if self.states else ""
+        return provided("Family.report")(self)
 
     def plot(self, ax: Any = None, column: str = "exponents") -> Any:
         """A measure of its states against eps, as a Figure of matplotlib, which a notebook shows.
@@ -109,8 +109,7 @@ class Family:
         ConverseError
             matplotlib is missing.
         """
-        from .pictures import family_plot
-        return family_plot(self, column, ax)
+        return provided("Family.plot")(self, column, ax)
 
     def write_csv(self, file: TextIO) -> None:
         """Writes a row for each state, with its measures.
@@ -141,8 +140,7 @@ class Family:
         ConverseError
             The file cannot be read, is not such a file, or names another potential.
         """
-        from .points import load
-        return load(path, potential)
+        return provided("PeriodicOrbit.load")(path, potential)
 
     def __repr__(self) -> str:
         first = self.states[0] if self.states else None
@@ -163,8 +161,7 @@ class Family:
         ConverseError
             As of PeriodicOrbit.save.
         """
-        from .points import save
-        save(self.states, path)
+        provided("PeriodicOrbit.save")(self.states, path)
 
 
 COLUMNS = ("potential", "p", "q", "eps", "label", "action", "shadow", "grad_size", "exponent_1",

@@ -4,7 +4,7 @@ import os
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import asinh, sinh, sqrt
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Tuple, Union
+from typing import Any, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -12,13 +12,11 @@ from .._native import ffi, lib
 from ..model.dynamics import jacobians
 from ..model.exact import whole_number
 from ..storage.files import ConverseError
+from ..storage.methods import provided
 from .limits import (EIGENVALUE_ROUNDING, EIGENVALUE_STEP, MAX_DISPLACEMENT, MAX_PIVOTS, MAX_Q,
                      MAX_SHADOW, NULL_EIGENVALUE, SHADOW_REACH)
 from .potential import Potential, address, done, finite, known
 from .stability import Monodromy, beyond, log_excesses, log_multipliers, log_weak_excess, product
-
-if TYPE_CHECKING:
-    from .minimax import Pair
 
 
 class Deviation(NamedTuple):
@@ -401,7 +399,7 @@ class PeriodicOrbit:
         order = np.argsort(-width, kind="stable")[:count]
         return Gaps(i[order], j[order], width[order], x[i[order]])
 
-    def minimax(self, step: int = 0) -> "Pair":
+    def minimax(self, step: int = 0) -> Any:
         """The pass from this minimum to one of its neighbours, itself begun at another point, with
         the difference of action, which for one angle is the flux through the gap.
 
@@ -417,8 +415,7 @@ class PeriodicOrbit:
         ConverseError
             The state is not a minimum, or certainly not the least; or no pass is found.
         """
-        from .minimax import minimax
-        return minimax(self, step)
+        return provided("PeriodicOrbit.minimax")(self, step)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes points, momenta and all else of the state to a file, from which load() reads the
@@ -434,15 +431,13 @@ class PeriodicOrbit:
         ConverseError
             The file cannot be written, or exists and is of another kind.
         """
-        from .points import save
-        save([self], path)
+        provided("PeriodicOrbit.save")([self], path)
 
     # ---- pictures
 
     def report(self) -> str:
         """What doubles show of it, in lines."""
-        from .report import header, report
-        return header(self) + report(self)
+        return provided("PeriodicOrbit.report")(self)
 
     def plot(self, ax: Any = None) -> Any:
         """Its angles and momenta, as a Figure of matplotlib, which a notebook shows.
@@ -460,8 +455,7 @@ class PeriodicOrbit:
         ConverseError
             matplotlib is missing.
         """
-        from .pictures import figure
-        return figure(self, ax)
+        return provided("PeriodicOrbit.plot")(self, ax)
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"], potential: Any = None) -> "PeriodicOrbit":
@@ -472,8 +466,7 @@ class PeriodicOrbit:
         path, potential
             As of Family.load, with the same errors.
         """
-        from .points import load
-        return load(path, potential)[0]
+        return provided("PeriodicOrbit.load")(path, potential)[0]
 
     # ---- other states
 

@@ -22,6 +22,7 @@ from ..model.statement import conditions, ended, indented, map_lines
 from ..storage.backup import Backup
 from ..storage.files import Path
 from ..storage.kept import Kept, headline, program_of, sealed, verify_text
+from ..storage.methods import provided
 from ..storage.signals import interruptible
 from ..version import __version__
 from . import native
@@ -247,8 +248,7 @@ class Portrait(Kept):
         ConverseError
             matplotlib is missing.
         """
-        from ..draw import portrait_figure
-        return portrait_figure.draw(self, None, tori, ax)
+        return provided("Portrait.plot")(self, None, tori, ax)
 
     def _text(self) -> str:
         lines = [FIRST_LINE, "program: converse " + self.version, *wave_lines(self.problem),

@@ -11,6 +11,7 @@ from typing import Any, Dict, List, Optional, Tuple
 from ..model.problem import Problem
 from ..model.region import symmetries_used
 from ..storage.kept import Kept
+from ..storage.methods import provided
 from ..version import __version__
 from . import tree
 from .native import TOO_LONG, Counts
@@ -246,14 +247,11 @@ class Proof(Kept):
         ConverseError
             matplotlib is missing.
         """
-        from ..draw import plot
-        return plot.page(self, caption) if ax is None else plot.draw(self, ax)
+        return provided("Proof.plot")(self, caption, ax)
 
     def _text(self):
-        from .proof_file import text_of
-        return text_of(self)
+        return provided("Proof.save")(self)
 
     @classmethod
     def _of(cls, content):
-        from .proof_file import proof_of
-        return proof_of(content)
+        return provided("Proof.load")(content)

@@ -15,6 +15,7 @@ from ..model.problem import Problem
 from ..model.statement import potential_text
 from ..storage.files import ConverseError, Path
 from ..storage.kept import Kept
+from ..storage.methods import provided
 from . import certificate
 from .effort import Tell, limited
 from .find import find
@@ -127,8 +128,7 @@ class ProvedTorus(Kept):
 
     def report(self) -> str:
         """The theorem in words, and what it rests on."""
-        from .report import verdict
-        return verdict(self)
+        return provided("ProvedTorus.report")(self)
 
     def plot(self, ax: Any = None) -> Any:
         """Draws the tori.
@@ -140,9 +140,7 @@ class ProvedTorus(Kept):
             two.  With None a Figure is returned, which also shows the Fourier coefficients and, for
             a range, the residual.
         """
-        from ..draw import torus_figure
-        tori = [piece.torus for piece in self.pieces]
-        return torus_figure.page(tori, self.pieces) if ax is None else torus_figure.into(ax, tori)
+        return provided("ProvedTorus.plot")([piece.torus for piece in self.pieces], ax, self.pieces)
 
     @classmethod
     def load(cls, path: Path, jobs: int = 1) -> "ProvedTorus":

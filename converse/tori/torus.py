@@ -29,6 +29,7 @@ from ..model.potential import FourierSum
 from ..model.problem import Problem
 from ..model.statement import potential_text
 from ..storage import files
+from ..storage.methods import provided
 
 if TYPE_CHECKING:
     from .rotation import Rotation
@@ -271,8 +272,7 @@ class Torus:
             Axes of matplotlib, which are drawn into and returned: one with one angle, a pair with
             two.  With None a Figure is returned, which also shows the Fourier coefficients.
         """
-        from ..draw import torus_figure
-        return torus_figure.page([self]) if ax is None else torus_figure.into(ax, [self])
+        return provided("Torus.plot")([self], ax)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes a certificate (docs/reference/torus-certificate.md) that nothing has verified.
@@ -294,8 +294,7 @@ class Torus:
         ConverseError
             The file cannot be written.
         """
-        from . import certificate
-        return files.write_text(path, certificate.text([self]))
+        return files.write_text(path, provided("Torus.save")([self]))
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Torus":
@@ -311,8 +310,7 @@ class Torus:
         ConverseError
             The file cannot be read, or is not a certificate.
         """
-        from . import certificate
-        return certificate.read(path).tori[0]
+        return provided("Torus.load")(path).tori[0]
 
 
 def decay(far: np.ndarray, size: np.ndarray) -> float:

@@ -6,33 +6,14 @@ from graphlib import TopologicalSorter
 import pytest
 from conftest import ROOT
 
+from converse.storage.methods import HOMES, provided
+
 # From the ground up; a room imports only what is on lower floors.  (_native is compiled; the
 # package itself, "", loads what it is asked for.)
 FLOORS = [["version", "_native", "storage"], ["model"], ["prover", "tori"], ["diagram"],
-          ["draw"], ["orbits"], ["commands"], ["", "__main__"]]
+          ["draw"], ["orbits"], ["commands", "results"], ["", "__main__"]]
 BESIDE = ["check", "_build"]            # import nothing of the others
 CHECKED = ["", "commands", "diagram", "storage", "tori"]        # may import the checker
-
-# Methods of a value that need more than the value does: each imports it when it is called.
-UPWARDS = {("model.map", "model.inputs"): "SymplecticMap.read",
-           ("model.dynamics", "orbits.portrait"): "SymplecticMap.portrait",
-           ("prover.proof", "draw.plot"): "Proof.plot",
-           ("prover.portrait", "draw.portrait_figure"): "Portrait.plot",
-           ("diagram.value", "draw.diagram_figure"): "Diagram.plot",
-           ("orbits.state", "orbits.pictures"): "PeriodicOrbit.plot",
-           ("orbits.state", "orbits.report"): "PeriodicOrbit.report",
-           ("orbits.solver", "orbits.report"): "Family.report",
-           ("orbits.proved", "orbits.pictures"): "ProvedOrbit.plot",
-           ("orbits.solver", "orbits.pictures"): "Family.plot",
-           ("orbits.state", "orbits.minimax"): "PeriodicOrbit.minimax",
-           ("orbits.minimax", "orbits.proved_pair"): "Pair.prove",
-           ("orbits.state", "orbits.points"): "PeriodicOrbit.load, PeriodicOrbit.save",
-           ("orbits.solver", "orbits.points"): "Family.load, Family.save",
-           ("tori.torus", "draw.torus_figure"): "Torus.plot",
-           ("tori.torus", "tori.certificate"): "Torus.load, Torus.save",
-           ("tori.proved", "tori.report"): "ProvedTorus.report",
-           ("tori.proved", "draw.torus_figure"): "ProvedTorus.plot",
-           ("prover.proof", "prover.proof_file"): "Proof.load, Proof.save"}
 
 PACKAGE = ROOT / "converse"
 
@@ -47,7 +28,7 @@ def modules():
 
 
 def imports(name, path, known):
-    """What a module imports of the package: (the module, whether at the top of the file)."""
+    """The modules of the package that a module imports, anywhere in its file."""
     tree = ast.parse(path.read_text("utf-8"))
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
     for node in ast.walk(tree):
@@ -68,7 +49,7 @@ def imports(name, path, known):
         for target in targets:
             assert target in known, (name, target)
             if target != name:
-                yield target, node in tree.body
+                yield target
 
 
 def room(name):
@@ -79,8 +60,8 @@ def room(name):
 def arrows():
     files = modules()
     known = {"_native", *files}
-    return {(name, target, top) for name, path in files.items()
-            for target, top in imports(name, path, known)}
+    return {(name, target) for name, path in files.items()
+            for target in imports(name, path, known)}
 
 
 def test_every_room_has_its_floor():
@@ -92,23 +73,37 @@ def test_every_room_has_its_floor():
 def test_no_arrow_leads_upwards(arrows):
     floor = {name: i for i, names in enumerate(FLOORS) for name in names}
 
-    def right(name, target):
+    def right(*arrow):
+        name, target = map(room, arrow)
         if name == target or name in CHECKED and target == "check":
             return True
         return not {name, target} & {*BESIDE} and floor[name] > floor[target]
 
-    assert [arrow for arrow in arrows if arrow[:2] not in UPWARDS
-            and not right(*map(room, arrow[:2]))] == []
-    assert {arrow[:2]: arrow[2] for arrow in arrows if arrow[:2] in UPWARDS} \
-        == dict.fromkeys(UPWARDS, False)                    # none of them at the top of a file
+    assert [arrow for arrow in arrows if not right(*arrow)] == []
 
 
 def test_no_circle(arrows):
     below = {}
-    for name, target, _ in arrows:
-        if (name, target) not in UPWARDS:
-            below.setdefault(name, set()).add(target)
+    for name, target in arrows:
+        below.setdefault(name, set()).add(target)
     assert len(list(TopologicalSorter(below).static_order())) > 40          # or CycleError
+
+
+def test_results_are_bound_in_one_place():
+    """The methods that rooms above provide are those that results ask for, and their functions are
+    there; nothing else is imported by a name in a string."""
+    for method, home in HOMES.items():
+        assert callable(provided(method)), home
+    asked, finders = set(), set()
+    for name, path in modules().items():
+        tree = ast.parse(path.read_text("utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "provided":
+                asked.add(ast.literal_eval(node.args[0]))
+            if "import_module" in (getattr(node, "attr", ""), getattr(node, "id", "")):
+                finders.add(name)
+    assert asked == HOMES.keys()
+    assert finders == {"", "commands", "storage.methods"}
 
 
 def test_the_page_shows_every_room():

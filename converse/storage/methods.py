@@ -1,0 +1,13 @@
+"""Methods of results whose work is done in a room above: converse/results.py says where.
+
+A value declares such a method with its docstring, and imports nothing for it."""
+
+# By method, "Class.method", the function that does the work.
+HOMES: "dict[str, str]" = {}
+
+
+def provided(method):
+    """The function that does the work of a method."""
+    import importlib  # late, as all that delays the handlers of signals
+    module, _, function = HOMES[method].rpartition(".")
+    return getattr(importlib.import_module("converse." + module), function)
