@@ -48,11 +48,11 @@ typedef struct {
 enum { CV_THESIS, CV_LOEWNER }; /* methods */
 
 /* A prism of the tree: along axis k it is slice index[k] of the 2^cuts[k] equal slices of the
-   root.  Axes: 0, 1 the angles v0, v1, less what the parameters shift them; 2, 3, 4 the parameters
-   t_1, t_2, t_3. */
+   root.  Axes: 0, 1, 5 the angles v0, v1, v2, less what the parameters shift them; 2, 3, 4 the
+   parameters t_1, t_2, t_3. */
 typedef struct {
-    unsigned long long index[5];
-    int cuts[5];
+    unsigned long long index[6];
+    int cuts[6];
     int hint; /* learnt from the prism it was cut from; 0 for the root */
 } cv_cell;
 
@@ -64,32 +64,34 @@ typedef struct cv_search cv_search;
 /* A wave of the potential V, -p sin(k.y + phase), whose amplitude p moves with the parameters, each
    in [-1, 1]: p = amplitude + t_1 part[0] + t_2 part[1] + t_3 part[2]. */
 typedef struct {
-    int k[2];
+    int k[3];
     const char *phase; /* in units of pi; it may be off by 10^-40 */
     const char *amplitude;
     const char *part[3];
 } cv_wave;
 
-/* A patch of parameter space, and the region of x_1 = frame v = (frame[0] v0 + frame[1] v1,
-   frame[2] v0 + frame[3] v1), whose determinant is not 0.  The region may move with the parameters:
-   v_i lies within half[i] of angle[i] + t_1 shift[i][0] + t_2 shift[i][1] + t_3 shift[i][2]. */
+/* A patch of parameter space, and the region of x_1 = frame v, x_1[i] = sum of frame[i][j] v_j,
+   whose determinant is not 0.  The region may move with the parameters: v_i lies within half[i] of
+   angle[i] + t_1 shift[i][0] + t_2 shift[i][1] + t_3 shift[i][2].  Of fewer than three angles the
+   first elements of the arrays are read. */
 typedef struct {
+    int n_angles; /* 1 to 3 */
     int n_waves, n_parameters; /* 1 to 16, and 0 to 3 */
     const cv_wave *waves;
-    const char *angle[2], *half[2]; /* centre and half-width of v0, v1 in units of pi */
-    const char *shift[2][3];            /* in units of pi; NULL: none */
-    int frame[4];
+    const char *angle[3], *half[3]; /* centre and half-width of v0, v1, v2 in units of pi */
+    const char *shift[3][3];            /* in units of pi; NULL: none */
+    int frame[3][3];
     int odd;                            /* is V odd about some point?  See cv_at_once */
 } cv_problem;
 
 /* A new search; it covers an enclosure of the problem's region.  The thesis's waves are (1, 0),
    (0, 1) and (1, 1) in this order, without phases.  Its method takes only these, each with a
    separate parameter, in the identity frame and without shifts.
-   xstar: the two coordinates of the starting point, or NULL to have one chosen.
+   xstar: the coordinates of the starting point, or NULL to have one chosen.
    longest: the most points of an orbit, or 0 for as many as the method can follow.  -n: n points,
    and the work ends before a prism whose orbit may need more: then `needs_long` of cv_look is 1.
    On success *s must be freed with cv_search_free.  It begins with the root as its only prism. */
-int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xstar[2], int method,
+int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xstar[3], int method,
                   int dp, int depth, int stubborn, int as_printed, int longest);
 void cv_search_free(cv_search *s);
 
@@ -143,7 +145,7 @@ void cv_forget_view(cv_view *view);
    is one parameter, and B > 10/3 at its upper end t_1 = 1; 0: neither.  With 1 or 2 the theorem
    also holds for every multiple s >= 1 of these amplitudes. */
 int cv_at_once(const cv_search *s);
-/* A coordinate, 0 or 1, of the starting point, and once the search is set up a constant of the
+/* A coordinate, 0 to 2, of the starting point, and once the search is set up a constant of the
    theorem, CV_T, ...: as exact decimals, which the caller frees.  NULL: no memory. */
 char *cv_xstar(const cv_search *s, int coordinate);
 char *cv_constant(const cv_search *s, int which);

@@ -11,12 +11,13 @@ int main(int argc, char **argv)
 {
     cv_wave waves[3] = { { .k = { 1, 0 } }, { .k = { 0, 1 } }, { .k = { 1, 1 } } };
     const int together = argc > 7 && atoi(argv[7]);
-    const cv_problem problem = { .n_waves = 3,
+    const cv_problem problem = { .n_angles = 2,
+                                 .n_waves = 3,
                                  .n_parameters = together ? 1 : 3,
                                  .waves = waves,
                                  .angle = { "0", "0" },
                                  .half = { "1", "1" },
-                                 .frame = { 1, 0, 0, 1 },
+                                 .frame = { { 1, 0 }, { 0, 1 } },
                                  .odd = 1 };
     const int threads = argc == 9 ? atoi(argv[8]) : 1;
     cv_search *s;

@@ -219,12 +219,13 @@ def native_problem(problem, owners):
         for term in problem.terms])
     owners.append(waves)
     ends = problem.v0, problem.v1
+    f = problem.frame
     return ffi.new("cv_problem *", {
-        "n_waves": len(problem.terms), "n_parameters": len(problem.parts), "waves": waves,
+        "n_angles": 2, "n_waves": len(problem.terms), "n_parameters": len(problem.parts), "waves": waves,
         "angle": [text((low + high) / 2) for low, high in ends],
         "half": [text((high - low) / 2) for low, high in ends],
         "shift": [[text(pair[i]) for pair in problem.shifts] for i in range(2)],
-        "frame": problem.frame, "odd": problem.odd is not None})
+        "frame": [f[:2], f[2:]], "odd": problem.odd is not None})
 
 
 def _nearly(phase):

@@ -9,14 +9,14 @@
 
 /* The potential in doubles. */
 typedef struct {
-    int k[MOST_WAVES][2];
+    int k[MOST_WAVES][ANGLES];
     double phase[MOST_WAVES], p[MOST_WAVES];
 } numbers;
 
 /* Where each parameter is t, without the waves that are zero there. */
 static waves potential_of(const patch *p, double t, numbers *room)
 {
-    waves v = { 0, (const int (*)[2])room->k, room->phase, room->p };
+    waves v = { 0, (const int (*)[ANGLES])room->k, room->phase, room->p };
     double amplitude[MOST_WAVES];
 
     patch_amplitudes(p, t, amplitude);
@@ -100,7 +100,12 @@ static void free_loewner(void *work, int numbers_lost)
     loewner_free(work);
 }
 
-static int loewner_axes(const patch *p) { return 2 + p->n_parameters; }
+static int loewner_has_axis(const patch *p, int axis)
+{
+    return axis < T1 ? axis < p->n_angles
+                     : axis < T1 + p->n_parameters || (axis == V2 && p->n_angles > 2);
+}
+
 static int loewner_lanes(const void *work) { return ((const loewner *)work)->engine->lanes; }
 
 static int loewner_try(void *work, int n, const cv_cell *const cells[], outcome *const out[])
@@ -118,7 +123,7 @@ const method method_loewner = {
     .prepare = loewner_prepare,
     .copy = loewner_copied,
     .free = free_loewner,
-    .axes = loewner_axes,
+    .has_axis = loewner_has_axis,
     .lanes = loewner_lanes,
     .try = loewner_try,
 };

@@ -250,7 +250,7 @@ static uint64_t factor_of(double k) { return (uint64_t)(int64_t)k; }
 static void set_angles(loewner *w, const patch *problem, const apm_t scale)
 {
     w->n_parameters = problem->n_parameters;
-    w->identity = is_identity(problem->frame);
+    w->identity = is_identity(problem);
     for (int i = 0; i < 2; i++) {
         w->turns.centre[i] = whole(w, problem->angle[i], scale, 0);
         w->turns.half[i] = whole(w, problem->half[i], scale, 0);
@@ -263,7 +263,7 @@ static void set_angles(loewner *w, const patch *problem, const apm_t scale)
         w->turns.xstar[i] = (uint64_t)whole(w, problem->xstar[i], scale, 0);
         w->xstar_err[i] = 2.0 * TURN_UNIT;
         for (int k = 0; k < 2; k++) {
-            w->frame[i][k] = problem->frame[2 * i + k];
+            w->frame[i][k] = problem->frame[i][k];
             w->turns.frame[i][k] = factor_of(w->frame[i][k]);
         }
     }

@@ -217,8 +217,8 @@ static void improve_along(const orbits *o, double excess, const int q[2], double
     const int size = q[0] * q[0] + q[1] * q[1];
     const double along = q[0] * x[0] + q[1] * x[1];
     double y[2] = { along, 0.0 }, p[MOST_WAVES];
-    int k[MOST_WAVES][2] = { { 0 } };
-    const waves of_angle = { v->n, (const int (*)[2])k, v->phase, p };
+    int k[MOST_WAVES][3] = { { 0 } };
+    const waves of_angle = { v->n, (const int (*)[3])k, v->phase, p };
     orbits of_it = *o;
 
     for (int j = 0; j < v->n; j++) {

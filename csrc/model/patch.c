@@ -16,7 +16,7 @@ static void for_each(patch *p, void (*what)(apm_t))
         for (int m = 0; m < PARAMETERS; m++)
             what(p->part[i][m]);
     }
-    for (int j = 0; j < 2; j++) {
+    for (int j = 0; j < ANGLES; j++) {
         what(p->angle[j]);
         what(p->half[j]);
         for (int m = 0; m < PARAMETERS; m++)
@@ -67,9 +67,15 @@ static void reduce(apm_t phase)
 
 static void read_wave(patch *p, int i, const cv_wave *wave, int *status)
 {
-    for (int j = 0; j < 2; j++)
+    int zero = 1;
+
+    for (int j = 0; j < p->n_angles; j++) {
         p->k[i][j] = wave->k[j];
-    if (abs(wave->k[0]) > MOST_K || abs(wave->k[1]) > MOST_K || (!wave->k[0] && !wave->k[1]))
+        zero = zero && wave->k[j] == 0;
+        if (abs(wave->k[j]) > MOST_K)
+            *status = CV_EARGUMENT;
+    }
+    if (zero)
         *status = CV_EARGUMENT;
     read_number(p->phase[i], wave->phase, status);
     read_number(p->amplitude[i], wave->amplitude, status);
@@ -79,18 +85,29 @@ static void read_wave(patch *p, int i, const cv_wave *wave, int *status)
         reduce(p->phase[i]);
 }
 
+static int determinant(int f[ANGLES][ANGLES])
+{
+    int sum = 0;
+
+    for (int i = 0; i < ANGLES; i++) {
+        const int j = (i + 1) % ANGLES, k = (i + 2) % ANGLES;
+        sum += f[0][i] * (f[1][j] * f[2][k] - f[1][k] * f[2][j]);
+    }
+    return sum;
+}
+
 static void read_region(patch *p, const cv_problem *given, int *status)
 {
-    const int *const f = given->frame;
-
-    for (int j = 0; j < 4; j++) {
-        p->frame[j] = f[j];
-        if (f[j] < -MOST_K || f[j] > MOST_K)
-            *status = CV_EARGUMENT;
-    }
-    if (*status == CV_OK && f[0] * f[3] == f[1] * f[2])
+    for (int i = 0; i < ANGLES; i++) /* identity beyond the angles: the determinant is as it is */
+        for (int j = 0; j < ANGLES; j++) {
+            const int there = i < p->n_angles && j < p->n_angles;
+            p->frame[i][j] = there ? given->frame[i][j] : i == j;
+            if (abs(p->frame[i][j]) > MOST_K)
+                *status = CV_EARGUMENT;
+        }
+    if (*status == CV_OK && determinant(p->frame) == 0)
         *status = CV_EARGUMENT;
-    for (int j = 0; j < 2; j++) {
+    for (int j = 0; j < p->n_angles; j++) {
         read_number(p->angle[j], given->angle[j], status);
         read_number(p->half[j], given->half[j], status);
         if (apm_sgn(p->half[j]) < 0)
@@ -105,9 +122,10 @@ int patch_read(patch *p, const cv_problem *given)
 {
     int status = CV_OK;
 
-    if (given->n_waves < 1 || given->n_waves > MOST_WAVES || given->n_parameters < 0 ||
-        given->n_parameters > PARAMETERS)
+    if (given->n_angles != 2 || given->n_waves < 1 || given->n_waves > MOST_WAVES ||
+        given->n_parameters < 0 || given->n_parameters > PARAMETERS)
         return CV_EARGUMENT;
+    p->n_angles = given->n_angles;
     p->n_waves = given->n_waves;
     p->n_parameters = given->n_parameters;
     p->odd = given->odd;
@@ -119,16 +137,21 @@ int patch_read(patch *p, const cv_problem *given)
 
 /* ---- what it is */
 
-int is_identity(const int frame[4])
+int is_identity(const patch *p)
 {
-    return frame[0] == 1 && frame[1] == 0 && frame[2] == 0 && frame[3] == 1;
+    int good = 1;
+
+    for (int i = 0; i < ANGLES; i++)
+        for (int j = 0; j < ANGLES; j++)
+            good = good && p->frame[i][j] == (i == j);
+    return good;
 }
 
 int has_plain_region(const patch *p)
 {
-    int plain = is_identity(p->frame);
+    int plain = is_identity(p);
 
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < p->n_angles; i++)
         for (int m = 0; m < p->n_parameters; m++)
             plain = plain && apm_sgn(p->shift[i][m]) == 0;
     return plain;
@@ -136,7 +159,7 @@ int has_plain_region(const patch *p)
 
 int thesis_parameters(const patch *p)
 {
-    int good = p->n_waves == 3 && p->n_parameters == 3;
+    int good = p->n_angles == 2 && p->n_waves == 3 && p->n_parameters == 3;
 
     for (int i = 0; i < 3 && good; i++) {
         good = p->k[i][0] == (i != 1) && p->k[i][1] == (i != 0) && apm_sgn(p->phase[i]) == 0;
@@ -175,7 +198,7 @@ static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_W
 int patch_symmetric(const patch *p)
 {
     const apm_struct *vector[MOST_WAVES];
-    int good = has_plain_region(p) && apm_cmp(p->angle[0], p->angle[1]) == 0 &&
+    int good = p->n_angles == 2 && has_plain_region(p) && apm_cmp(p->angle[0], p->angle[1]) == 0 &&
                apm_cmp(p->half[0], p->half[1]) == 0;
 
     for (int i = 0; i < p->n_waves; i++)

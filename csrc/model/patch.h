@@ -6,13 +6,13 @@
 #include "arith/apm.h"
 #include "converse.h"                   /* without a guard, as cffi reads it: only here */
 
-enum { MOST_WAVES = 16, PARAMETERS = 3 };
+enum { MOST_WAVES = 16, PARAMETERS = 3, ANGLES = 3 };
 
 /* cv_problem as numbers; phases in radians, which may be off by 10^-39. */
 typedef struct {
-    int n_waves, n_parameters, k[MOST_WAVES][2], frame[4], odd;
+    int n_angles, n_waves, n_parameters, k[MOST_WAVES][ANGLES], frame[ANGLES][ANGLES], odd;
     apm_t phase[MOST_WAVES], amplitude[MOST_WAVES], part[MOST_WAVES][PARAMETERS];
-    apm_t angle[2], half[2], shift[2][PARAMETERS], xstar[2];
+    apm_t angle[ANGLES], half[ANGLES], shift[ANGLES][PARAMETERS], xstar[ANGLES];
 } patch;
 
 void patch_init(patch *p);
@@ -22,7 +22,7 @@ void patch_clear(patch *p);
    it is not a problem. */
 int patch_read(patch *p, const cv_problem *given);
 
-int is_identity(const int frame[4]);
+int is_identity(const patch *p); /* Is the frame? */
 
 /* Are these the thesis's waves, in its order and without phases, each with its own parameter? */
 int thesis_parameters(const patch *p);

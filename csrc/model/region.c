@@ -43,7 +43,7 @@ void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp)
    half contains the errors of the others. */
 void region_to_radians(patch *p, const apm_t pi, long dp)
 {
-    for (int j = 0; j < 2; j++) {
+    for (int j = 0; j < p->n_angles; j++) {
         to_radians(p->angle[j], p->half[j], pi, dp);
         for (int m = 0; m < PARAMETERS; m++)
             shift_to_radians(p->shift[j][m], p->half[j], pi, dp);

@@ -7,7 +7,7 @@
 /* V(y) = -sum of p[j] sin(k[j].y + phase[j]), phases in radians. */
 typedef struct {
     int n;
-    const int (*k)[2];
+    const int (*k)[3];
     const double *phase, *p;
 } waves;
 

@@ -5,7 +5,7 @@
 
 #include "model/patch.h"
 
-enum { AXES = 5, V0 = 0, V1 = 1 };      /* of a cell: converse.h */
+enum { AXES = 6, V0 = 0, V1 = 1, T1 = 2, V2 = 5 }; /* of a cell: converse.h */
 enum { MOST_LANES = 8 };
 
 /* The outcome of one try of a prism. */
@@ -53,7 +53,7 @@ typedef struct {
        these are abandoned, and all other memory is freed. */
     void (*free)(void *work, int numbers_lost);
 
-    int (*axes)(const patch *p); /* of a cell, that may be cut */
+    int (*has_axis)(const patch *p, int axis); /* of a cell, that may be cut */
     int (*lanes)(const void *work); /* cells that are best tried together, at most MOST_LANES */
 
     /* Is it impossible that a minimizing orbit leads from x* to these cells?  The outcome of a cell

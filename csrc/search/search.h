@@ -54,7 +54,11 @@ struct cv_search {
 
 static inline int all_cuts(const cv_cell *c)
 {
-    return c->cuts[0] + c->cuts[1] + c->cuts[2] + c->cuts[3] + c->cuts[4];
+    int sum = 0;
+
+    for (int axis = 0; axis < AXES; axis++)
+        sum += c->cuts[axis];
+    return sum;
 }
 
 static inline long decided_leaves(const cv_search *s)

@@ -32,17 +32,17 @@ void cv_search_free(cv_search *s)
 }
 
 /* The starting point of the method's choice, rounded to its decimal places. */
-static int choose_xstar(const cv_search *s, apm_t xstar[2])
+static int choose_xstar(const cv_search *s, apm_t xstar[ANGLES])
 {
     const long places = s->method->start_places;
     int status = CV_OK;
-    double start[2];
+    double start[ANGLES];
     apm_t half;
 
     s->method->choose_start(&s->problem, s->symmetric, start);
     apm_init(half);
     apm_set_si(half, 5, -places - 1);
-    for (int j = 0; j < 2; j++) {
+    for (int j = 0; j < s->problem.n_angles; j++) {
         if (apm_set_d(xstar[j], start[j]) != APM_OK)
             status = CV_ENUMBER;
         apm_add(xstar[j], xstar[j], half);
@@ -52,14 +52,14 @@ static int choose_xstar(const cv_search *s, apm_t xstar[2])
     return status;
 }
 
-static int set_start(cv_search *s, const char *const xstar[2])
+static int set_start(cv_search *s, const char *const xstar[ANGLES])
 {
     int status = CV_OK;
 
     s->symmetric = patch_symmetric(&s->problem);
     if (xstar == NULL)
         status = choose_xstar(s, s->problem.xstar);
-    for (int j = 0; j < 2 && xstar != NULL; j++)
+    for (int j = 0; j < s->problem.n_angles && xstar != NULL; j++)
         if (apm_set_str(s->problem.xstar[j], xstar[j]) != APM_OK)
             status = CV_ENUMBER;
     if (status == CV_OK && apm_cmp(s->problem.xstar[0], s->problem.xstar[1]) != 0)
@@ -101,7 +101,7 @@ int set_up(cv_search *s)
     return s->method->prepare(&s->work, &s->problem, &s->precision, s->constants, &s->at_once);
 }
 
-int cv_search_new(cv_search **result, const cv_problem *problem, const char *const xstar[2],
+int cv_search_new(cv_search **result, const cv_problem *problem, const char *const xstar[ANGLES],
                   int method, int dp, int depth, int stubborn, int as_printed, int longest)
 {
     cv_search *s;

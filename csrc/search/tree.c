@@ -17,7 +17,7 @@
 enum { MOST_PENDING = AXES * INDEX_BITS + 1 };  /* A cut adds one, and a cell has fewer cuts. */
 enum { OLD = -1 };                      /* the steps of a node of a tree that was taken up */
 
-static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
+static const cv_cell whole; /* all zeros */
 
 static int is_cut(char kind) { return kind >= '0' && kind < '0' + AXES; }
 
@@ -305,7 +305,6 @@ static int is_leaf(const cv_search *s, char node, const cv_cell *c)
 /* Reads the tree, whose text is s->old, and lists the prisms to be tried. */
 static int take_up(cv_search *s, const int hints[], int n_hints)
 {
-    const int axes = s->method->axes(&s->problem);
     cv_cell pending[MOST_PENDING] = { whole };
     size_t first = s->old_length;       /* the untried prism */
     int n = 1, last = 0;
@@ -318,7 +317,8 @@ static int take_up(cv_search *s, const int hints[], int n_hints)
         cv_cell *const c = &pending[n - 1];
         if (last > 0 && node != '?')
             s->prisms[last].old_end = j + 1;
-        if (is_cut(node) && node < '0' + axes && may_halve(s, c, node - '0')) {
+        if (is_cut(node) && s->method->has_axis(&s->problem, node - '0') &&
+            may_halve(s, c, node - '0')) {
             pending[n] = *c;
             split_cell(&pending[n - 1], node - '0', &pending[n]);
             n++;

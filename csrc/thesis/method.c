@@ -103,10 +103,10 @@ static int thesis_copy(void **copy, const void *work, const patch *p, const prec
     return status;
 }
 
-static int thesis_axes(const patch *p)
+static int thesis_has_axis(const patch *p, int axis)
 {
     (void)p;
-    return 2;                           /* v0 and v1 only */
+    return axis == V0 || axis == V1;
 }
 
 static int thesis_lanes(const void *work)
@@ -171,7 +171,7 @@ const method method_thesis = {
     .prepare = thesis_prepare,
     .copy = thesis_copy,
     .free = free_bench,
-    .axes = thesis_axes,
+    .has_axis = thesis_has_axis,
     .lanes = thesis_lanes,
     .try = thesis_try,
 };

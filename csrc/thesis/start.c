@@ -14,7 +14,7 @@ static const double PI = 3.14159265358979323846;
    asked for, so that symmetry can be used.  p: the amplitudes of the thesis's three waves. */
 static void find_start(objective *f, double x[2], const double p[3], int on_diagonal)
 {
-    static const int k[3][2] = { { 1, 0 }, { 0, 1 }, { 1, 1 } };
+    static const int k[3][3] = { { 1, 0 }, { 0, 1 }, { 1, 1 } };
     static const double phase[3] = { 0.0, 0.0, 0.0 };
     const waves v = { 3, k, phase, p };
     double best[2] = { PI / 2, PI / 2 }, g[2], h[3], least = HUGE_VAL, value;

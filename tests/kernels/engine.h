@@ -24,7 +24,7 @@ static void poison(void *work, const loewner *problem, int s, int t)
 
 static int follow_root(void *work, const loewner *problem, int s, int t)
 {
-    static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
+    static const cv_cell whole;
     batch *const w = work;
     loewner_cell c;
     int good = 1;
@@ -145,7 +145,7 @@ static void sincos_of(uint64_t turns, int64_t *sine, int64_t *cosine, double y[]
 static void pull_of(void *work, const loewner *problem, uint64_t turns, const double n_mu[4],
                     double y[4])
 {
-    static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
+    static const cv_cell whole;
     batch *const w = work;
     const int last = problem->waves - 1;
     loewner_cell c;

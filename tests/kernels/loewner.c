@@ -112,7 +112,7 @@ static void look_at_thesis(const loewner *w, double n, known_point *p)
 
 static cv_cell cell_of(const request *r)
 {
-    cv_cell cell = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
+    cv_cell cell = { { 0 }, { 0 }, 0 };
 
     for (int j = 0; j < 5; j++) {
         cell.index[j] = (unsigned long long)fabs(r->more[j]);
@@ -306,9 +306,10 @@ static const row kernels[] = {
 static void set_patch(patch *b, apm_t in[], int together, const apm_t zero)
 {
     memset(b, 0, sizeof *b);
+    b->n_angles = 2;
     b->n_waves = 3;
     b->n_parameters = together ? 1 : 3;
-    b->frame[0] = b->frame[3] = 1;
+    b->frame[0][0] = b->frame[1][1] = b->frame[2][2] = 1;
     for (int i = 0; i < 3; i++) {
         b->k[i][0] = i != 1;
         b->k[i][1] = i != 0;
@@ -337,6 +338,7 @@ static int set_any(patch *b, const question *q, int more)
         q->nin != rest + 16 + more)
         return 0;
     memset(b, 0, sizeof *b);
+    b->n_angles = 2;
     b->n_waves = waves;
     b->n_parameters = parameters;
     for (int i = 0; i < waves; i++) {
@@ -356,7 +358,8 @@ static int set_any(patch *b, const question *q, int more)
             *b->shift[j][m] = *in[rest + 10 + PARAMETERS * j + m];
     }
     for (int j = 0; j < 4; j++)
-        b->frame[j] = (int)apm_get_d(in[rest + 4 + j]);
+        b->frame[j / 2][j % 2] = (int)apm_get_d(in[rest + 4 + j]);
+    b->frame[2][2] = 1;
     return 1;
 }
 

@@ -216,6 +216,7 @@ static int region_that_moves(long dp, apm_t in[], apm_t out[])
     apm_init(pi);
     apm_pi(pi, dp);
     patch_init(&p);
+    p.n_angles = 1;
     apm_set(p.angle[0], in[0]);
     apm_set(p.half[0], in[1]);
     for (int m = 0; m < PARAMETERS; m++)
