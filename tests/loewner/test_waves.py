@@ -719,7 +719,8 @@ def test_at_once():
 
 @pytest.mark.parametrize("change", [
     {"n_waves": 0}, {"n_waves": 17}, {"n_parameters": 4}, {"n_parameters": -1},
-    {"frame": (1, 2, -2, -4)}, {"frame": (1, 1, 1, 1)}, {"frame": (101, 1, 100, 1)},
+    {"n_angles": 0}, {"n_angles": 4},
+    {"frame": ((1, 2), (-2, -4))}, {"frame": ((1, 1), (1, 1))}, {"frame": ((101, 1), (100, 1))},
     {"k": (0, 0)}, {"k": (101, 0)}, {"k": (0, -101)}, {"half": "-1"}])
 def test_nonsense_is_refused(change):
     owners = []
