@@ -4,7 +4,7 @@ import math
 import textwrap
 from fractions import Fraction
 
-from ..model.problem import IDENTITY, frame_text
+from ..model.problem import frame_text, identity
 from ..model.region import nearest
 from ..model.statement import TORUS, conditions, potential_text
 from ..prover import tree
@@ -51,7 +51,7 @@ def foot(proof):
     if any(map(proof.tree.count, tree.CUTS[2:])) and not proof.all_decided:
         lines.append("where prisms of several parameters share a place, "
                      "what is not proved lies on top")
-    if proof.problem.frame != IDENTITY:
+    if proof.problem.frame != identity(proof.problem.size):
         lines.append("the angles after x* are " + frame_text(proof.problem.frame, "v%d"))
     if proof.symmetries_used:
         lines.append("this region stands for the whole torus by "
@@ -80,7 +80,8 @@ def star(proof):
     if proof.xstar is None:
         return None
     x = [Fraction(text) / Fraction(math.pi) for text in proof.xstar]
-    centre, half = proof.problem.centre[-2:], proof.problem.half[-2:]
+    n = proof.problem.size
+    centre, half = proof.problem.centre[-n:], proof.problem.half[-n:]
     for v, middle, side in zip(nearest(proof.problem.frame, x, centre), centre, half):
         if side == 0 or abs(v - middle) > side:
             return None

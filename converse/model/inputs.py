@@ -9,7 +9,7 @@ from typing import IO, NoReturn, Union
 
 from .exact import exact
 from .map import MOST_CHARACTERS, MuldoonMap, affine
-from .problem import InputError, Problem
+from .problem import ANGLES, InputError, Problem
 
 LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documentation calls them
 INTEGER = re.compile("-?[0-9]{1,9}")
@@ -186,7 +186,7 @@ def _check_fields(where, value, needed, others):
 
 
 def _problem(value, name):
-    _check_fields("", value, ["harmonics"], ["parameters", "comments", "v0", "v1"])
+    _check_fields("", value, ["harmonics"], ["parameters", "comments", *ANGLES])
     for key, kinds, want in (("harmonics", (list,), "a list of objects"),
                              ("parameters", (dict,), "an object of ranges by name"),
                              ("comments", (list, str), "a string or a list of strings")):
@@ -198,16 +198,18 @@ def _problem(value, name):
         where, k = "harmonic %d, k" % j, harmonic["k"]
         if not isinstance(k, list) or not all(
                 isinstance(n, _Number) and INTEGER.fullmatch(n) for n in k):
-            _fail(where, "this is not a list of integers", "give [k] or [k0, k1]")
-        if len(k) not in (1, 2):
-            _fail(where, "maps have one angle or two, not %d" % len(k), "give [k] or [k0, k1]")
+            _fail(where, "this is not a list of integers", "give [k], [k0, k1] or [k0, k1, k2]")
+        if not 1 <= len(k) <= 3:
+            _fail(where, "maps have one to three angles, not %d" % len(k),
+                  "give [k], [k0, k1] or [k0, k1, k2]")
         if len(k) != len(value["harmonics"][0]["k"]):
-            _fail(where, "the number of angles is not that of harmonic 1", "give [k] or [k0, k1] "
-                  "in all harmonics")
+            _fail(where, "the number of angles is not that of harmonic 1", "give [k], [k0, k1] or "
+                  "[k0, k1, k2] in all harmonics")
         waves.append((*map(int, k), *(0,) * (2 - len(k)), harmonic.get("phase", "-sin")))
-    if "v1" in value and len(k) == 1:
-        _fail("v1", "a map of the circle has no second angle", "leave it out")
+    for angle in ANGLES[len(k) if waves else 3:]:
+        if angle in value:
+            _fail(angle, "the map has no such angle", "leave it out")
     made = affine(waves, [harmonic["amplitude"] for harmonic in value["harmonics"]],
                   value.get("parameters", {}), name)
-    return Problem(made, value.get("v0", (0, 2)), value.get("v1", (0, 2)),
-                   value.get("comments", ()))
+    return Problem(made, comments=value.get("comments", ()),
+                   **{angle: value[angle] for angle in ANGLES if angle in value})

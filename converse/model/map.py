@@ -31,6 +31,7 @@ MOST_CHARACTERS = 1000
 MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of k and of a frame
 NAME = re.compile(r"[^\W\d]\w{0,30}(\[[0-9]{1,9}\])?")      # of a parameter
 RESERVED = "J", "J0", "J1", "P", "S", "V", "cos", "pi", "sin", "y", "y0", "y1"     # of theorems
+RESERVED_OF_THREE = "J2", "y2"          # of theorems about three angles
 CONSTANT = "constant"                   # the part of an amplitude that no parameter moves
 
 Range = Tuple[Number, Number]           # Ends are made of it
@@ -40,7 +41,7 @@ Amplitude = Union[Number, Range, Mapping[str, Number]]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SymplecticMap(Dynamics):
-    """A symplectic twist map of the torus in one or two angles, or a family of such maps:
+    """A symplectic twist map of the torus in one to three angles, or a family of such maps:
 
         y' = y + J', J' = J - grad V(y),    V(y) = - sum of p[j] sin(k[j].y + pi phase[j]),
 
@@ -51,10 +52,11 @@ class SymplecticMap(Dynamics):
     Parameters
     ----------
     harmonics
-        (k0, k1) or (k0, k1, phase) of each harmonic: k integers up to 100.  The phase is a number
-        in units of pi, but no int, which would look like a third k; or "+cos", "-cos", "+sin" or
-        "-sin": then the term of V is p times this function of k.y.  Without a phase it is "-sin".
-        If all k1 are 0, the map has one angle.
+        (k0, k1), (k0, k1, phase), (k0, k1, k2) or (k0, k1, k2, phase) of each harmonic: k integers
+        up to 100, two in all harmonics or three in all.  The phase is a number in units of pi, but
+        no int, which would look like another k; or "+cos", "-cos", "+sin" or "-sin": then the term
+        of V is p times this function of k.y.  Without a phase it is "-sin".  If all k2 are 0, the
+        map has two angles at most; if all k1 are 0 also, it has one.
     amplitude
         Of each harmonic where all parameters are 0, an exact number.
     slopes
@@ -93,11 +95,11 @@ class SymplecticMap(Dynamics):
 
     def __post_init__(self) -> None:
         harmonics, amplitude, slopes = _checked(self.harmonics, self.amplitude, self.slopes)
-        names = tuple(self.names)
+        names, reserved = tuple(self.names), RESERVED + RESERVED_OF_THREE * (len(harmonics[0]) > 3)
         for name in names:
-            if not isinstance(name, str) or not NAME.fullmatch(name) or name in RESERVED:
+            if not isinstance(name, str) or not NAME.fullmatch(name) or name in reserved:
                 raise ValueError("a parameter's name is a letter and then letters and digits, and "
-                                 "none of %s, not %.40r" % (", ".join(RESERVED), name))
+                                 "none of %s, not %.40r" % (", ".join(reserved), name))
         given = list(self.ranges) or [(Fraction(-1), Fraction(1))] * len(slopes)
         ranges = [ends_of("the range of %s" % name, ends) for name, ends in zip(
             names if len(names) == len(given) else
@@ -158,8 +160,9 @@ class SymplecticMap(Dynamics):
 
     @property
     def dimension(self) -> int:     # type: ignore[override]
-        """The number of angles: 1 if no harmonic depends on y1, else 2."""
-        return 2 if any(k1 for _, k1, _ in self.harmonics) else 1
+        """The number of angles: 3 if a harmonic depends on y2, else 2 if one depends on y1, else
+        1."""
+        return max(i + 1 for *k, _ in self.harmonics for i, x in enumerate(k) if x or not i)
 
     @cached_property
     def patch(self) -> Tuple[Numbers, Tuple[Numbers, ...]]:
@@ -340,8 +343,8 @@ def FourierMap(harmonics: Mapping[Any, Amplitude], *, name: str = "",
     Parameters
     ----------
     harmonics
-        {k: p} or {(k, phase): p}.  k is an integer for one angle, a pair (k0, k1) for two; the
-        phase is as of SymplecticMap.  An amplitude p is a number, a range (low, high), or {name:
+        {k: p} or {(k, phase): p}.  k is an integer for one angle, a pair (k0, k1) for two, (k0, k1,
+        k2) for three; the phase is as of SymplecticMap.  An amplitude p is a number, a range (low, high), or {name:
         factor} of parameters, with the name "constant" for what no parameter moves.
 
         ========  ==============  ==================
@@ -367,7 +370,8 @@ def FourierMap(harmonics: Mapping[Any, Amplitude], *, name: str = "",
 
 
 def _wave(key):
-    """The harmonic of a key of FourierMap: k, (k0, k1), or (k, phase) with either k."""
+    """The harmonic of a key of FourierMap: k, (k0, k1), (k0, k1, k2), or (k, phase) with any of
+    them."""
     if is_integer(key):
         return key, 0
     if isinstance(key, tuple) and len(key) == 2 and not is_integer(key[1]):
@@ -470,8 +474,8 @@ def exact_of(name: str, number: Any) -> Fraction:
 def _phase(name, given="-sin"):
     """A phase in units of pi, from -1 to 1.  A warning: it looks like one in radians."""
     if is_integer(given):
-        raise TypeError("%s, %.40r, looks like a third k; maps have one angle or two, and a phase "
-                        "that is an integer is given as a string" % (name, given))
+        raise TypeError("%s, %.40r, looks like another k; a phase that is an integer is given as a "
+                        "string" % (name, given))
     if not isinstance(given, str):
         return 1 - (1 - exact_of(name, given)) % 2
     if "+" + given in PHASES:
@@ -503,21 +507,28 @@ def _checked(harmonics, amplitude, slopes):
                          % (len(slopes), MOST_PARAMETERS))
     seen = {}
     for j, wave in enumerate(harmonics):
-        if len(wave) not in (2, 3):
-            raise ValueError("harmonic %d: give (k0, k1) or (k0, k1, phase), not %d numbers"
-                             % (j + 1, len(wave)))
-        if not all(map(is_integer, wave[:2])):
-            raise TypeError("harmonic %d: k is two integers, not %.40r" % (j + 1, wave[:2]))
-        k = k0, k1 = tuple(map(integer, wave[:2]))
-        if k == (0, 0) or max(map(abs, k)) > HIGHEST:
-            raise ValueError("harmonic %d: k = (%s, %s) is %s" % (
-                j + 1, *map(short_text, k), "not a harmonic" if k == (0, 0) else
-                "out of range (%d at most)" % HIGHEST))
-        harmonics[j] = *k, _phase("the phase of harmonic %d" % (j + 1), *wave[2:])
+        n = 3 if len(wave) > 2 and is_integer(wave[2]) else 2
+        if not 2 <= len(wave) <= n + 1:
+            raise ValueError("harmonic %d: give (k0, k1) or (k0, k1, k2), and a phase at most, not "
+                             "%d numbers" % (j + 1, len(wave)))
+        if not all(map(is_integer, wave[:n])):
+            raise TypeError("harmonic %d: k is two integers or three, not %.40r"
+                            % (j + 1, wave[:n]))
+        k = tuple(map(integer, wave[:n]))
+        if not any(k) or max(map(abs, k)) > HIGHEST:
+            raise ValueError("harmonic %d: k = (%s) is %s" % (
+                j + 1, ", ".join(map(short_text, k)), "out of range (%d at most)" % HIGHEST
+                if any(k) else "not a harmonic"))
+        harmonics[j] = *k, _phase("the phase of harmonic %d" % (j + 1), *wave[n:])
+        if len(harmonics[j]) != len(harmonics[0]):
+            raise ValueError("harmonic %d has %d integers k, and harmonic 1 has not; a phase that "
+                             "is an integer is given as a string" % (j + 1, n))
         if harmonics[j] in seen:
             raise ValueError("harmonics %d and %d are the same; add up their amplitudes"
                              % (seen[harmonics[j]], j + 1))
         seen[harmonics[j]] = j + 1
+    if not any(any(wave[2:-1]) for wave in harmonics):      # nothing depends on y2
+        harmonics = [(*wave[:2], wave[-1]) for wave in harmonics]
     for name, numbers in [("the amplitude", amplitude)] + [
             ("the slope by parameter %d" % m, slope) for m, slope in enumerate(slopes, 1)]:
         if len(numbers) != len(harmonics):

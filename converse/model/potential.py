@@ -22,8 +22,8 @@ from typing import Dict, Iterator, NamedTuple, Tuple
 
 from .exact import Ends, number_text, pi_bounds, sine_bounds
 
-Wave = Tuple[int, int, Fraction]        # k0, k1 and the phase in units of pi
-Rows = Iterator[Tuple[Tuple[int, int], Ends, Ends]]
+Wave = Tuple                            # k, two integers or three, and the phase in units of pi
+Rows = Iterator[Tuple[Tuple[int, ...], Ends, Ends]]
 QUARTER = Fraction(1, 2)                # A quarter turn in units of pi: sin(t + pi/2) = cos t.
 # The phases, in units of pi, with which a term - p sin(t + pi phase) of V is p times such a word.
 PHASES = {"-sin": Fraction(0), "-cos": QUARTER, "+sin": Fraction(1), "+cos": -QUARTER}
@@ -34,7 +34,7 @@ class Term(NamedTuple):
     """What a wave adds to -V over a patch: (p + sum of t[m] parts[m]) sin(k.y + pi phase), with all
     t[m] from -1 to 1."""
 
-    k: Tuple[int, int]
+    k: Tuple[int, ...]
     phase: Fraction
     p: Fraction
     parts: Tuple[Fraction, ...]
@@ -55,38 +55,38 @@ class Term(NamedTuple):
 
 
 class FourierSum(NamedTuple):
-    """waves -- (k0, k1, phase in units of pi)
+    """waves -- (k0, k1, phase in units of pi), or (k0, k1, k2, phase) of three angles
     amplitude -- p of each wave
-    dimension -- of the angles, 1 (all k1 are 0) or 2"""
+    dimension -- of the angles: 1 (all k1 are 0), 2 or 3"""
 
     waves: Tuple[Wave, ...]
     amplitude: Tuple[Fraction, ...]
     dimension: int
 
     def terms(self, digits: int) -> Rows:
-        """Yields the terms c cos k.y + d sin k.y of V: ((k0, k1), (ends of c), (ends of d)).
+        """Yields the terms c cos k.y + d sin k.y of V: (k, (ends of c), (ends of d)).
 
         Waves with rational c and d are exact, and added up for each k.  Each other wave is a
         separate term, whose ends are within 10^-digits of the truth."""
-        rational: Dict[Tuple[int, int], Tuple[Fraction, Fraction]] = {}
-        for (k0, k1, phase), p in zip(self.waves, self.amplitude):
+        rational: Dict[Tuple[int, ...], Tuple[Fraction, Fraction]] = {}
+        for (*k, phase), p in zip(self.waves, self.amplitude):
             if (2 * phase).denominator == 1:
-                c, d = rational.get((k0, k1), (Fraction(0), Fraction(0)))
-                rational[k0, k1] = (c - p * sine_bounds(phase, 0)[0],
-                                    d - p * sine_bounds(phase + QUARTER, 0)[0])
-        for k, (c, d) in rational.items():
-            yield k, (c, c), (d, d)
+                c, d = rational.get(tuple(k), (Fraction(0), Fraction(0)))
+                rational[tuple(k)] = (c - p * sine_bounds(phase, 0)[0],
+                                      d - p * sine_bounds(phase + QUARTER, 0)[0])
+        for wave, (c, d) in rational.items():
+            yield wave, (c, c), (d, d)
         more = digits + len(str(math.ceil(max(map(abs, self.amplitude)))))
-        for (k0, k1, phase), p in zip(self.waves, self.amplitude):
+        for (*k, phase), p in zip(self.waves, self.amplitude):
             if (2 * phase).denominator != 1:
-                yield ((k0, k1), product((-p, -p), sine_bounds(phase, more)),
+                yield (tuple(k), product((-p, -p), sine_bounds(phase, more)),
                        product((-p, -p), sine_bounds(phase + QUARTER, more)))
 
     def text(self, turn: str = "2 pi", letter: str = "x") -> str:
         """V(2 pi x) in words, exactly.  turn: the factor of the angles, or "" for V(y)."""
         parts = []
         for (*k, phase), p in zip(self.waves, self.amplitude):
-            names = (letter + "0", letter + "1") if self.dimension == 2 else (letter,)
+            names = angle_names(letter, self.dimension)
             angle = sum_text(zip(k, names))
             if not any(k):                      # a constant, of phase 1/2
                 parts.append((-p, ""))
@@ -103,6 +103,11 @@ class FourierSum(NamedTuple):
         return sum_text(parts)
 
 
+def angle_names(letter: str, dimension: int) -> Tuple[str, ...]:
+    """The names of the angles, or of the momenta, of a map."""
+    return tuple(letter + str(i) for i in range(dimension)) if dimension > 1 else (letter,)
+
+
 def potential_text(waves, forms, dimension: int) -> str:
     """V(y), exactly.  forms: each amplitude as a linear form of parameters, {name: factor}; the
     name "" is the constant's."""
@@ -113,7 +118,7 @@ def potential_text(waves, forms, dimension: int) -> str:
 def harmonics_text(waves, forms, factors, quarters: int, dimension: int) -> str:
     """The sum of factor p sin(k.y + phi + quarters pi/2), exactly, each term with its sign: it is
     written with k.y alone where phi is a multiple of pi/2."""
-    letters, text = ("y",) if dimension == 1 else ("y0", "y1"), ""
+    letters, text = angle_names("y", dimension), ""
     for (*k, phase), form, factor in zip(waves, forms, factors):
         angle, (function, sign) = sum_text(zip(k, letters)), QUARTERS[quarters]
         if (2 * phase).denominator == 1:

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
-from math import gcd
-from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
+from functools import cached_property, lru_cache
+from math import gcd, isqrt
+from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Tuple, Union
 
 from ..storage.files import ConverseError, plain
 from .exact import Ends, Number, decimal_text, integer, is_decimal, is_integer, outward, range_text
@@ -12,11 +12,13 @@ from .lattice import echelon
 from .map import HIGHEST, PLACES, THESIS, Numbers, Range, SymplecticMap, ends_of, exact_of
 from .potential import Term, Wave, sum_text
 
-NAMES = ("a", "b", "c", "v0", "v1")
-IDENTITY = 1, 0, 0, 1
+ANGLES = "v0", "v1", "v2"
+IDENTITY = 1, 0, 0, 1                   # the frame of two angles that changes nothing
+WHOLE = Fraction(0), Fraction(2)        # of an angle, in units of pi
 
-Frame = Tuple[int, int, int, int]
-Shifts = Tuple[Tuple[Fraction, Fraction], ...]         # of v0 and v1, by each parameter
+Frame = Tuple[int, ...]                 # a square matrix, row by row
+Matrix = Sequence[Sequence[Fraction]]
+Shifts = Tuple[Numbers, ...]            # of v0, v1, ..., by each parameter
 
 
 class InputError(ConverseError, ValueError):
@@ -35,21 +37,21 @@ class Problem:
     map
         The map or the family.  Ends of its ranges that are not finite decimals, such as 4/3, are
         moved outwards to 40 places.
-    v0, v1
+    v0, v1, v2
         The ranges of the angles of x_1, in units of pi; by default they cover the torus, as a
-        theorem needs.
+        theorem needs.  Only a map of three angles has v2.
     comments
         For the report and the proof file.  Control characters in them become escapes.
     axes
-        The frame, x_1 = frame.(v0, v1), as (f00, f01, f10, f11).  By default, where v0 and v1 are
-        all of the torus, the frame is chosen with the region that stands for the torus (region.py);
-        else it is the identity.  `frame` has it.
+        The frame, x_1 = frame.(v0, v1), as (f00, f01, f10, f11); of three angles nine integers.
+        By default, where the region is all of the torus, the frame is chosen with the region that
+        stands for the torus (region.py); else it is the identity.  `frame` has it.
     alone
         The coordinate that is examined alone, 0 or 1, or "no"; by default it is chosen.  `factor`
-        has it.
+        has it.  Of three angles none is.
     shifts
-        For each parameter, the distances by which it moves v0 and v1 at its upper end, in units of
-        pi.  At t the region is moved by sum of t[m] shifts[m].  Only the regions
+        For each parameter, the distances by which it moves the angles of the region at its upper
+        end, in units of pi.  At t the region is moved by sum of t[m] shifts[m].  Only the regions
         of further starting points move (`part`).
 
     Raises
@@ -59,26 +61,30 @@ class Problem:
     """
 
     map: SymplecticMap
-    v0: Ends = (Fraction(0), Fraction(2))
-    v1: Ends = (Fraction(0), Fraction(2))
+    v0: Ends = WHOLE
+    v1: Ends = WHOLE
     comments: Tuple[str, ...] = ()
     axes: Optional[Frame] = None
     alone: Union[int, str, None] = None
     shifts: Shifts = ()
+    v2: Ends = WHOLE
 
     if TYPE_CHECKING:                   # the arguments; above are the values made of them
         def __init__(self, map: SymplecticMap, v0: Union[Range, Number] = (0, 2),
                      v1: Union[Range, Number] = (0, 2), comments: Union[str, Sequence[str]] = (),
                      axes: Optional[Frame] = None, alone: Union[int, str, None] = None,
-                     shifts: Sequence[Sequence[Number]] = ()) -> None: ...
+                     shifts: Sequence[Sequence[Number]] = (),
+                     v2: Union[Range, Number] = (0, 2)) -> None: ...
 
     def __post_init__(self) -> None:
         if not isinstance(self.map, SymplecticMap):
             raise TypeError("the map is a SymplecticMap, such as converse.StandardMap('0.9'), not "
                             "%.200r" % (self.map,))
         self.map.enclosed               # ValueError: an amplitude is not a finite decimal
-        for name in NAMES[3:]:
+        for name in ANGLES:
             object.__setattr__(self, name, outward(*ends_of(name, getattr(self, name)), PLACES))
+        if self.size == 2 and self.v2 != WHOLE:
+            raise ValueError("v2 is given, and no wave depends on a third angle; leave v2 out")
         comments = [self.comments] if isinstance(self.comments, str) else list(self.comments)
         if not all(isinstance(comment, str) for comment in comments):
             raise TypeError("comments are strings")
@@ -103,13 +109,13 @@ class Problem:
         """
         return source if isinstance(source, Problem) else cls(source)
 
-    def part(self, region: Tuple[Ends, Ends], shifts: Shifts = ()) -> "Problem":
+    def part(self, region: Sequence[Ends], shifts: Shifts = ()) -> "Problem":
         """The same map with another region, in the same frame.
 
         Parameters
         ----------
         region
-            The ranges of v0 and v1, in units of pi.
+            The ranges of v0, v1, ..., in units of pi.
         shifts
             As for Problem.
 
@@ -123,7 +129,7 @@ class Problem:
         ValueError
             The region or the shifts are not as described.
         """
-        return replace(self, v0=region[0], v1=region[1], axes=self.frame, shifts=shifts,
+        return replace(self, **dict(zip(ANGLES, region)), axes=self.frame, shifts=shifts,
                        comments=())
 
     def tied(self) -> "Problem":
@@ -145,10 +151,12 @@ class Problem:
         """Checks the axes and alone."""
         if self.axes is not None:
             axes = tuple(self.axes)
-            if len(axes) != 4 or not all(is_integer(f) and abs(f) <= HIGHEST for f in axes) or \
-                    axes[0] * axes[3] == axes[1] * axes[2]:
-                raise ValueError("the axes are four integers up to %d whose determinant is not 0, "
-                                 "not %r" % (HIGHEST, self.axes))
+            if len(axes) != self.size ** 2 or \
+                    not all(is_integer(f) and abs(f) <= HIGHEST for f in axes) or \
+                    not determinant(rows(axes)):
+                raise ValueError("the axes are %s integers up to %d whose determinant is not 0, "
+                                 "not %r" % ({2: "four", 3: "nine"}[self.size], HIGHEST,
+                                             self.axes))
             object.__setattr__(self, "axes", tuple(map(integer, axes)))
         if self.alone is not None:
             if self.alone not in (0, 1, "no") or isinstance(self.alone, bool):
@@ -158,15 +166,15 @@ class Problem:
                                  "depend on one")
 
     def _check_shifts(self):
-        """Checks that there is a pair for each parameter, or none."""
-        shifts = exact_shifts(self.shifts)
+        """Checks that there are distances for each parameter, or none."""
+        shifts = exact_shifts(self.shifts, self.size)
         if self.shifts and len(self.shifts) != len(self.parts):
             raise ValueError("there are shifts by %d parameters for %d"
                              % (len(self.shifts), len(self.parts)))
         object.__setattr__(self, "shifts", shifts)
 
     def _key(self):
-        return (self.map, self.v0, self.v1, self.comments, self.frame, self.factor,
+        return (self.map, self.region, self.comments, self.frame, self.factor,
                 self.shifts and (self.shifts, self.map.patch))
 
     def __eq__(self, other: object) -> bool:
@@ -176,17 +184,22 @@ class Problem:
         return hash(self._key())
 
     def __repr__(self):
-        ranges = ["%s=%s" % (name, range_text(*getattr(self, name))) for name in NAMES[3:]]
+        ranges = ["%s=%s" % (name, range_text(*ends)) for name, ends in zip(ANGLES, self.region)]
         if self.shifts:
             ranges.append("shifts=(%s)" % "; ".join(
-                "%s %s" % tuple(map(decimal_text, pair)) for pair in self.shifts))
+                " ".join(map(decimal_text, distances)) for distances in self.shifts))
         return "<Problem: %s; %s>" % (self.map, ", ".join(ranges))
 
     # ---- the map as the core and a proof file take it: in finite decimals
 
     @property
+    def size(self) -> int:
+        """The number of coordinates that k, x* and the region have: 2, or 3 of three angles."""
+        return max(2, self.map.dimension)
+
+    @property
     def waves(self) -> Tuple[Wave, ...]:
-        """(k0, k1, phase in units of pi) of each wave."""
+        """(k0, k1, phase in units of pi) of each wave, or (k0, k1, k2, phase)."""
         return self.map.harmonics
 
     @property
@@ -202,7 +215,7 @@ class Problem:
     @cached_property
     def terms(self) -> Tuple[Term, ...]:
         """The waves with their amplitudes over the patch."""
-        return tuple(Term((k0, k1), phase, p, tuple(parts)) for (k0, k1, phase), p, *parts in zip(
+        return tuple(Term(tuple(k), phase, p, tuple(parts)) for (*k, phase), p, *parts in zip(
             self.waves, self.amplitude, *self.parts))
 
     @property
@@ -239,24 +252,29 @@ class Problem:
 
     @cached_property
     def frame(self) -> Frame:
-        """x_1 = (f[0] v0 + f[1] v1, f[2] v0 + f[3] v1)."""
+        """x_1 = (f[0] v0 + f[1] v1, f[2] v0 + f[3] v1), or the same with three angles."""
         return self._best_frame() if self.axes is None else self.axes
 
     @cached_property
-    def present(self) -> List[Tuple[Tuple[int, int], Fraction]]:
-        """The waves that are nonzero somewhere in the patch: (k0, k1), and |p| in its middle."""
+    def present(self) -> List[Tuple[Tuple[int, ...], Fraction]]:
+        """The waves that are nonzero somewhere in the patch: k, and |p| in its middle."""
         return [(term.k, abs(term.p)) for term in self.terms if term.most]
 
     def _best_frame(self):
         """The frame where none is given.  If all waves depend on one q.y, which is not a
-        coordinate, v0 moves along lines of constant q.y, and need not be cut.  The region of such a
-        frame must be the whole torus."""
-        directions = {(k0 // gcd(k0, k1), k1 // gcd(k0, k1)) for (k0, k1), _ in self.present}
-        q = max(directions, default=(0, 0))
-        if not directions <= {q, (-q[0], -q[1])} or 0 in q or not self.full_torus:
-            return IDENTITY
-        sign, (x, y) = (1 if q[1] > 0 else -1), bezout(*q)
-        return sign * q[1], x, -sign * q[0], y  # of determinant sign q.(x, y)
+        coordinate, only the last of v0, v1, ... moves q.y, and the others need not be cut.  The
+        region of such a frame must be the whole torus."""
+        directions = {tuple(x // gcd(*k) for x in k) for k, _ in self.present}
+        q = max(directions, default=())
+        if not directions <= {q, tuple(-x for x in q)} or sum(map(bool, q)) < 2 or \
+                not self.full_torus:
+            return identity(self.size)
+        (last,), others = echelon([(x, *row) for x, row in reversed(list(
+            zip(q, rows(identity(self.size)))))], 1)
+        columns = [row[1:] for row in others] + [tuple(x * last[0] for x in last[1:])]
+        columns = [c if c > (0,) * len(q) or c is columns[-1] else tuple(-x for x in c)
+                   for c in columns]    # the last one with q.c = 1
+        return tuple(x for row in zip(*columns) for x in row)
 
     @cached_property
     def factor(self) -> Optional[int]:
@@ -270,7 +288,8 @@ class Problem:
         return self.alone if isinstance(self.alone, int) else None
 
     def _best_alone(self):
-        """The coordinate with the larger V'', or None where a wave depends on both."""
+        """The coordinate with the larger V'', or None where a wave depends on both, and of three
+        angles."""
         bends = [sum(p * k[i] ** 2 for k, p in self.present) for i in range(2)]
         felt = {tuple(map(bool, k)) for k, _ in self.present}
         return int(bends[1] > bends[0]) if felt == {(True, False), (False, True)} else None
@@ -282,92 +301,115 @@ class Problem:
                      if self.factor is None or term.k[1 - self.factor] == 0)
 
     @cached_property
-    def odd(self) -> Optional[Ends]:
+    def odd(self) -> Optional[Numbers]:
         """A point s, in units of pi, about which V is odd; None: V is not odd about any point.
 
         For every wave k.s + phase is an integer.  Sums and differences of such conditions are such
-        conditions.  So Euclid's algorithm replaces them by one for s1 alone, one with s0, and
-        conditions on the phases alone."""
-        pivots, rest = echelon([(Fraction(k0), Fraction(k1), phase)
-                                for k0, k1, phase in self.waves], 2)
-        s = [Fraction(0), Fraction(0)]
-        if any(row[2].denominator != 1 for row in rest):
+        conditions.  So Euclid's algorithm replaces them by one for the last coordinate alone, one
+        with that before it, and so on, and conditions on the phases alone."""
+        pivots, rest = echelon([tuple(map(Fraction, wave)) for wave in self.waves], self.size)
+        s = [Fraction(0)] * self.size
+        if any(row[-1].denominator != 1 for row in rest):
             return None
         for i, pivot in reversed(list(enumerate(pivots))):
             if pivot is not None:
-                s[i] = -(pivot[2] + sum(pivot[m] * s[m] for m in range(i + 1, 2))) / pivot[i] % 1
-        return s[0], s[1]
+                s[i] = -(pivot[-1] + sum(a * b for a, b in zip(pivot[i + 1:], s[i + 1:]))) \
+                    / pivot[i] % 1
+        return tuple(s)
 
     @property
     def is_flat(self) -> bool:
         """Do the waves that the search needs depend on one combination of the angles?"""
-        k = [wave for wave, _ in self.present]
-        return self.factor is not None or all(a * d == b * c for a, b in k for c, d in k)
+        pivots, _ = echelon([k for k, _ in self.present], self.size)
+        return self.factor is not None or len(list(filter(None, pivots))) < 2
 
     # ---- ranges
 
     @property
+    def region(self) -> Tuple[Ends, ...]:
+        """The ranges of v0, v1, ..., in units of pi."""
+        return (self.v0, self.v1, self.v2)[:self.size]
+
+    @property
     def centre(self) -> Numbers:
-        """The middles of the amplitudes' ranges and of those of v0 and v1."""
-        return self.amplitude + tuple((low + high) / 2 for low, high in (self.v0, self.v1))
+        """The middles of the amplitudes' ranges and of those of the region."""
+        return self.amplitude + tuple((low + high) / 2 for low, high in self.region)
 
     @property
     def half(self) -> Numbers:
         """The half-widths of the same ranges."""
         return (*(term.half for term in self.terms),
-                *((high - low) / 2 for low, high in (self.v0, self.v1)))
+                *((high - low) / 2 for low, high in self.region))
 
     @property
     def full_torus(self) -> bool:
         """Does the region hold every possible successor?  (region.symmetries_used also sees where
         it need not.)"""
         return all(high - low >= period for (low, high), period
-                   in zip((self.v0, self.v1), periods(self.axes or IDENTITY)))
+                   in zip(self.region, periods(self.axes or identity(self.size))))
 
 
-def periods(frame: Frame) -> Tuple[Fraction, Fraction]:
-    """P0 and P1, in units of pi: x_1 = frame.v is the same point of the torus where v is moved by
-    (0, P1), and by (P0, some number)."""
-    f00, f01, f10, f11 = frame
-    common = gcd(f01, f11)
-    return Fraction(2 * common, abs(f00 * f11 - f01 * f10)), Fraction(2, common)
+def identity(n: int) -> Frame:
+    """The frame of n angles that changes nothing."""
+    return tuple(int(i == j) for i in range(n) for j in range(n))
 
 
-def inverse(frame: Frame) -> Tuple[Tuple[Fraction, Fraction], ...]:
+def rows(frame: Frame) -> Tuple[Tuple[int, ...], ...]:
+    """The rows of a frame."""
+    n = isqrt(len(frame))
+    return tuple(frame[i:i + n] for i in range(0, n * n, n))
+
+
+def determinant(matrix: Sequence[Sequence]) -> Any:
+    """The determinant of a matrix, by its first row."""
+    return sum((-1) ** j * x * determinant([row[:j] + row[j + 1:] for row in matrix[1:]])
+               for j, x in enumerate(matrix[0]) if x) if matrix else 1
+
+
+def inverse(frame: Frame) -> Matrix:
     """The rows of the inverse of a frame."""
-    a, b, c, d = frame
-    determinant = Fraction(a * d - b * c)
-    return (d / determinant, -b / determinant), (-c / determinant, a / determinant)
+    matrix, size = rows(frame), determinant(rows(frame))
+    return tuple(tuple(
+        Fraction((-1) ** (i + j) * determinant([row[:i] + row[i + 1:] for m, row in
+                                                enumerate(matrix) if m != j]), size)
+        for j in range(len(matrix))) for i in range(len(matrix)))
 
 
-def bezout(a: int, b: int) -> Tuple[int, int]:
-    """(x, y) with a x + b y = 1, where there are such integers."""
-    if b == 0:
-        return a, 0
-    x, y = bezout(b, a % b)
-    return y, x - a // b * y
+@lru_cache(64)
+def moves(frame: Frame) -> List[Numbers]:
+    """Vectors that generate those, in units of pi, by which v may be moved: x_1 = frame.v stays the
+    same point of the torus.  Of each the components before the i-th are 0, i = 0, 1, ..."""
+    pivots, _ = echelon([[2 * x for x in column] for column in zip(*inverse(frame))],
+                        isqrt(len(frame)))
+    return pivots
 
 
-def exact_shifts(shifts: Sequence[Sequence[Number]]) -> Shifts:
-    """Exact pairs, () if all of them are 0.  TypeError, ValueError: these are not shifts."""
+def periods(frame: Frame) -> Numbers:
+    """P0, P1, ..., in units of pi: x_1 = frame.v is the same point of the torus where the last of
+    v0, v1, ... is moved by its period, and each other one with some move of those after it."""
+    return tuple(abs(move[i]) for i, move in enumerate(moves(frame)))
+
+
+def exact_shifts(shifts: Sequence[Sequence[Number]], size: int) -> Shifts:
+    """Exact shifts of `size` angles, () if all of them are 0.  TypeError, ValueError: these are not
+    shifts."""
     try:
-        given = [tuple(pair) for pair in shifts]
+        given = [tuple(distances) for distances in shifts]
     except TypeError:
-        raise TypeError("shifts are pairs of numbers") from None
-    pairs = []
-    for pair in given:
-        if len(pair) != 2:
-            raise ValueError("the shifts by a parameter are of v0 and v1, not %d numbers"
-                             % len(pair))
-        s0, s1 = (exact_of("a shift", x) for x in pair)
-        for x in s0, s1:
+        raise TypeError("shifts are pairs of numbers, or triples of three angles") from None
+    found = []
+    for distances in given:
+        if len(distances) != size:
+            raise ValueError("the shifts by a parameter are of %s, not %d numbers"
+                             % (" and ".join(ANGLES[:size]), len(distances)))
+        found.append(tuple(exact_of("a shift", x) for x in distances))
+        for x in found[-1]:
             if not is_decimal(x):
                 raise ValueError("a shift: %s is not a finite decimal" % x)
-        pairs.append((s0, s1))
-    return tuple(pairs) if any(map(any, pairs)) else ()
+    return tuple(found) if any(map(any, found)) else ()
 
 
 def frame_text(frame, name):
-    """The angles that belong to v0 and v1, whose names are name % 0 and name % 1."""
-    names = name % 0, name % 1
-    return "(%s, %s)" % (sum_text(zip(frame[:2], names)), sum_text(zip(frame[2:], names)))
+    """The angles that belong to v0, v1, ..., whose names are name % 0, name % 1, ..."""
+    return "(%s)" % ", ".join(sum_text((f, name % i) for i, f in enumerate(row))
+                              for row in rows(frame))

@@ -1,20 +1,22 @@
 """Which regions of the successors of x* stand for the whole torus, and the one that is searched.
 
-A region is a rectangle of v, x_1 = F v with the integers F of the frame.  Two x_1 that differ by
-multiples of 2 pi are one point of the torus.  So, in units of pi, v may be moved by (0, P1) and by
-(P0, a number).  P0 = 2 g/|det F| and P1 = 2/g, with g the divisor of F's second column.  Reversal
-of time takes v0 to 2 c0 - v0, and the exchange of the angles v1 to -v1: docs/proofs/argument.md,
-section 2.
+A region is a box of v, x_1 = F v with the integers F of the frame.  Two x_1 that differ by
+multiples of 2 pi are one point of the torus.  So, in units of pi, the last of v0, v1, ... may be
+moved by its period alone, and each other one by its period together with some moves of those after
+it (problem.moves).  Reversal of time takes v0 to 2 c0 - v0.  The exchange of two angles takes v1 to
+-v1: docs/proofs/argument.md, section 2.
 """
 
 import itertools
-import math
 from dataclasses import replace
 from fractions import Fraction
+from math import gcd
 from typing import List, Optional, Sequence, Tuple
 
 from .exact import Ends, pi_bounds, rounded, sine_bounds
-from .problem import IDENTITY, Frame, Problem, bezout, inverse, periods
+from .lattice import echelon
+from .map import HIGHEST
+from .problem import ANGLES, IDENTITY, Frame, Problem, identity, inverse, moves, periods, rows
 
 EXCHANGED = 0, 1, 1, 0              # the frame with v0 and v1 for the second angle and the first
 DIAGONALS = 1, 1, 1, -1             # v0 along the diagonal, v1 across it
@@ -24,7 +26,7 @@ PLACES = 9                          # of the ends of a region that is chosen, wh
 MARGIN = Fraction(1, 10 ** PLACES)  # spare, so that whoever bounds c0 sees that they suffice
 FAR = 8                             # in units of pi
 
-Point = Tuple[str, str]
+Point = Tuple[str, ...]
 
 
 def symmetries_used(problem: Problem, xstar: Optional[Point]) -> Optional[List[str]]:
@@ -32,11 +34,11 @@ def symmetries_used(problem: Problem, xstar: Optional[Point]) -> Optional[List[s
     has shifts."""
     if problem.shifts:
         return None
-    period0, period1 = periods(problem.frame)
-    (low0, high0), (low1, high1) = problem.v0, problem.v1
+    period0, *others = periods(problem.frame)
+    (low0, high0), *rest = problem.region
     used = []
-    if high1 - low1 < period1:
-        if high1 < 1 or xstar is None or not folds(problem, xstar):
+    if any(high - low < period for (low, high), period in zip(rest, others)):
+        if problem.v1[1] < 1 or xstar is None or not folds(problem, xstar):
             return None
         used = [EXCHANGE]
     if high0 - low0 < period0:
@@ -50,9 +52,9 @@ def symmetries_used(problem: Problem, xstar: Optional[Point]) -> Optional[List[s
 
 
 def exchangeable(problem: Problem, xstar: Point) -> bool:
-    """Does the exchange of the angles leave x* alone, and the patch and the shifts, with the
+    """Does the exchange of the two angles leave x* alone, and the patch and the shifts, with the
     parameters in some order?"""
-    if Fraction(xstar[0]) != Fraction(xstar[1]) or problem.factor is not None:
+    if problem.size > 2 or Fraction(xstar[0]) != Fraction(xstar[1]) or problem.factor is not None:
         return False
     waves = list(zip(problem.waves, problem.amplitude, *problem.parts))
     here = _sums(waves)
@@ -68,10 +70,10 @@ def folds(problem: Problem, xstar: Point) -> bool:
         not any(s1 for _, s1 in problem.shifts) and exchangeable(problem, xstar)
 
 
-def with_image(problem: Problem, xstar: Point) -> Tuple[Ends, Ends]:
+def with_image(problem: Problem, xstar: Point) -> Tuple[Ends, ...]:
     """The region that links to a part may lead into, with its mirror image if that is proved."""
     if not folds(problem, xstar):
-        return problem.v0, problem.v1
+        return problem.region
     most = max(map(abs, problem.v1))
     return problem.v0, (-most, most)
 
@@ -105,19 +107,22 @@ def reversal_centre(problem: Problem, xstar: Point) -> Ends:
     examined, r the first row of F^-1.  It is affine in the parameters, whose shifts of v0 are
     subtracted."""
     row, star = inverse(problem.frame)[0], tuple(map(Fraction, xstar))
-    ends = [row[0] * star[0] + row[1] * star[1]] * 2
-    moves = [[Fraction(0)] * 2 for _ in problem.parts]
-    for (k0, k1), phase, p, parts in problem.searched:
-        cosine = _cosine(k0 * star[0] + k1 * star[1], phase)
-        weight = (row[0] * k0 + row[1] * k1) / 2
+    ends = [_dot(row, star)] * 2
+    by_parameter = [[Fraction(0)] * 2 for _ in problem.parts]
+    for k, phase, p, parts in problem.searched:
+        cosine, weight = _cosine(_dot(k, star), phase), _dot(row, k) / 2
         _add(ends, weight * p, cosine)
-        for move, part in zip(moves, parts):
+        for move, part in zip(by_parameter, parts):
             _add(move, weight * part, cosine)
-    for move, (shift, _) in zip(moves, problem.shifts):
+    for move, (shift, *_) in zip(by_parameter, problem.shifts):
         _add(move, -shift, pi_bounds(DIGITS))
-    reach = sum([max(map(abs, move)) for move in moves], Fraction(0))
+    reach = sum([max(map(abs, move)) for move in by_parameter], Fraction(0))
     quotients = [x / p for x in (ends[0] - reach, ends[1] + reach) for p in pi_bounds(DIGITS)]
     return min(quotients), max(quotients)
+
+
+def _dot(x, y):
+    return sum(a * b for a, b in zip(x, y))
 
 
 def _add(ends, factor, interval):
@@ -139,47 +144,48 @@ def _cosine(angle, phase):
 def reduced(problem: Problem, xstar: Point, frame: Optional[Frame] = None) -> Problem:
     """The problem, whose region is all of the torus, in this frame, by default one that suits it,
     with the smaller region that stands for the torus."""
-    if problem.frame != IDENTITY:       # all waves feel one combination of the angles
+    if problem.frame != identity(problem.size):     # all waves feel one combination of the angles
         return problem
     problem = replace(problem, axes=frame or _frame(problem, xstar))
-    period0, period1 = periods(problem.frame)
+    period0, *others = periods(problem.frame)
     low, high = reversal_centre(problem, xstar)
     if high - low >= period0 / 2 or max(abs(low), abs(high)) > FAR:
         v0 = Fraction(0), period0   # reversal gains nothing, or doubles are too coarse there
     else:
         v0 = (rounded(low - MARGIN, PLACES, up=False),
               rounded(high + period0 / 2 + MARGIN, PLACES, up=True))
-    exchanged = problem.frame == DIAGONALS and exchangeable(problem, xstar)
-    return replace(problem, v0=v0, v1=(Fraction(0), Fraction(1) if exchanged else period1))
+    if problem.frame == DIAGONALS and exchangeable(problem, xstar):
+        others = [Fraction(1)]
+    return replace(problem, v0=v0, **{
+        name: (Fraction(0), most) for name, most in zip(ANGLES[1:], others)})
 
 
 def _frame(problem, xstar):
-    """v0 along the wave that bends most, v1 across it; or, where that may be, along the diagonal
-    and across it."""
+    """v0 along the wave that bends most, the others across it; or, of two angles, where that may
+    be, along the diagonal and across it."""
     if problem.factor is not None:
         return EXCHANGED if problem.factor else IDENTITY
     if exchangeable(problem, xstar):
         return DIAGONALS
-    k0, k1 = max(problem.terms, key=lambda term: term.most * sum(k * k for k in term.k)).k
-    common = math.gcd(k0, k1)
-    k0, k1 = k0 // common, k1 // common
-    if 0 in (k0, k1):
-        return IDENTITY if k0 else EXCHANGED
-    return k0, -k1, k1, k0
+    k = max(problem.terms, key=lambda term: term.most * sum(x * x for x in term.k)).k
+    k = tuple(x // gcd(*k) for x in k)
+    if sum(map(bool, k)) == 1:          # along a coordinate, which comes first
+        units = sorted(rows(identity(len(k))), key=lambda unit: unit != tuple(map(abs, k)))
+        return tuple(x for row in zip(*units) for x in row)
+    if len(k) == 2:
+        return k[0], -k[1], k[1], k[0]
+    _, across = echelon([(x, *row) for x, row in zip(k, rows(identity(3)))], 1)
+    frame = tuple(x for row in zip(k, *[c for _, *c in across]) for x in row)
+    return frame if max(map(abs, frame)) <= HIGHEST else identity(3)
 
 
 # ---- places in it
 
 def nearest(frame: Frame, x: Sequence[Fraction], centre: Sequence[Fraction]) -> List[Fraction]:
-    """The v that x stands for, all in units of pi, moved to where v0, and then v1, is nearest to
-    the centre."""
-    f00, f01, f10, f11 = frame
-    det = f00 * f11 - f01 * f10
-    period0, period1 = periods(frame)
-    common = math.gcd(f01, f11)
-    m, n = bezout(f11 // common, -f01 // common)        # 2 (m, n) moves v0 by P0 or -P0
-    turns = round((centre[0] - (f11 * x[0] - f01 * x[1]) / det) / period0)
-    turns *= 1 if det > 0 else -1
-    x0, x1 = x[0] + 2 * m * turns, x[1] + 2 * n * turns
-    v0, v1 = (f11 * x0 - f01 * x1) / det, (f00 * x1 - f10 * x0) / det
-    return [v0, v1 + period1 * round((centre[1] - v1) / period1)]
+    """The v that x stands for, all in units of pi, moved to where v0 is nearest to the centre, then
+    v1, and so on."""
+    v = [_dot(row, x) for row in inverse(frame)]
+    for i, move in enumerate(moves(frame)):
+        turns = round((centre[i] - v[i]) / move[i])
+        v = [a + turns * b for a, b in zip(v, move)]
+    return v

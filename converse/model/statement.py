@@ -10,7 +10,7 @@ from .map import LINE
 
 WIDTH, INDENT = 98, 11                  # characters of a line, and of the labels at its left
 LONGEST = 12                            # A value of epsilon with more digits is not printed.
-TORUS = {1: "rotational invariant circle", 2: "invariant torus"}        # by dimension
+TORUS = {1: "rotational invariant circle", 2: "invariant torus", 3: "invariant torus"}
 
 
 # ---- lines
@@ -44,7 +44,7 @@ def map_lines(problem):
 def _force(problem):
     """The same map without V: J' = J + K sin y, or a line for each component."""
     lines = []
-    for i, letter in enumerate(["J"] if problem.map.dimension == 1 else ["J0", "J1"]):
+    for i, letter in enumerate(potential.angle_names("J", problem.map.dimension)):
         lines += ["%s' = %s%s," % (letter, letter, potential.harmonics_text(
             problem.waves, _forms(problem), [wave[i] for wave in problem.waves], 1,
             problem.map.dimension))]
@@ -145,6 +145,6 @@ def _epsilon(problem, at_once):
 
 
 def one_angle(problem):
-    """The only angle that the waves depend on; None: they depend on both or on none."""
-    return {((True, False),): 0, ((False, True),): 1}.get(
-        tuple({(bool(k0), bool(k1)) for (k0, k1), _ in problem.present}))
+    """The only angle that the waves depend on; None: they depend on several or on none."""
+    felt = {i for k, _ in problem.present for i, x in enumerate(k) if x}
+    return min(felt) if len(felt) == 1 else None

@@ -2,7 +2,7 @@
 another (docs/proofs/argument.md, section 10).
 
 Let f be the map of an invariant graph, f(x*) = F v and f(x) = F v'.  Then v' - v lies in a small
-rectangle that depends on x* and x alone.  So where v' must lie in a region that is excluded over
+box that depends on x* and x alone.  So where v' must lie in a region that is excluded over
 x, v is excluded over x*.  All of this is exact arithmetic on rationals; nothing of it is floating.
 """
 
@@ -25,7 +25,8 @@ SPARE = Fraction(1, 10 ** 6)            # A link leaves this width to checkers w
 PI = pi_bounds(DIGITS)
 LEAST_GAP, MOST_CLUSTERS = Fraction(1, 256), 8      # as a part of a region's sides
 
-Box = Tuple[Ends, Ends]                 # the ranges of v0 and v1, in units of pi
+Box = Tuple[Ends, ...]                  # the ranges of v0, v1, ..., in units of pi
+Point = Tuple[str, ...]
 Cell = Tuple[Tuple[int, ...], Tuple[int, ...]]      # as in tree.Walk
 
 
@@ -65,16 +66,16 @@ class Link:
     box: Box
 
     @classmethod
-    def between(cls, problem: Problem, largest: Fraction, here: Tuple[str, str],
-                there: Tuple[str, str]) -> "Link":
+    def between(cls, problem: Problem, largest: Fraction, here: Point,
+                there: Point) -> "Link":
         """Lemma 10 along the segment in pieces; of a point and itself nothing but 0.  largest: a
         bound of B, of all parameters of the problem."""
         start, end = ([Fraction(x) for x in point] for point in (here, there))
         step = [(b - a) / PIECES for a, b in zip(start, end)]
-        l, rows = least_slope(largest), inverse(problem.frame)
+        l, rows, n = least_slope(largest), inverse(problem.frame), problem.size
         if start == end:                # roots are rounded up
-            return cls(((Fraction(0), Fraction(0)),) * 2)
-        middle, radius = [Fraction(0)] * 2, [Fraction(0)] * 2
+            return cls(((Fraction(0), Fraction(0)),) * n)
+        middle, radius = [Fraction(0)] * n, [Fraction(0)] * n
         for piece in range(PIECES):
             centre = [a + d * (piece + Fraction(1, 2)) for a, d in zip(start, step)]
             d = _spread(problem, l, centre, [abs(x) / 2 for x in step])
@@ -87,8 +88,7 @@ class Link:
 
     def image(self, box: Box) -> Box:
         """Where v' lies if v lies in the box."""
-        (a0, b0), (a1, b1) = self.box
-        return (box[0][0] + a0, box[0][1] + b0), (box[1][0] + a1, box[1][1] + b1)
+        return tuple((low + a, high + b) for (low, high), (a, b) in zip(box, self.box))
 
     def leads_into(self, box: Box, region: Box) -> bool:
         """Does v' lie in the region if v lies in the box, with something to spare?  Where the
@@ -99,13 +99,18 @@ class Link:
 
 def crests(problem: Problem) -> List[Fraction]:
     """Bounds of the largest eigenvalue of beta, with every wave at its largest, at the ends of the
-    parameters; of the first parameter the slowest.  In each parameter they are convex."""
-    found = []
+    parameters; of the first parameter the slowest.  In each parameter they are convex.
+
+    Of n eigenvalues with the mean m and the sum s of the squares of their distances from m, none is
+    more than m + root of (n - 1) s/n."""
+    found, n = [], problem.size
     for signs in product((-1, 1), repeat=len(problem.parts)):
-        d = [Fraction(2), Fraction(0), Fraction(2)]
+        d = _scalar(n, Fraction(2))
         for term in problem.terms:
             d = _with(d, abs(term.at(signs)), term.k)
-        found.append(_up((d[0] + d[2]) / 2 + _root((d[0] - d[2]) ** 2 / 4 + d[1] ** 2)))
+        mean = sum(d[i][i] for i in range(n)) / n
+        squares = sum(x * x for row in d for x in row) - n * mean ** 2
+        found.append(_up(mean + _root(squares * (n - 1) / n)))
     return found
 
 
@@ -125,8 +130,8 @@ def _largest(ends, index, cuts):
 
 def _spread(problem, l, centre, reach):
     """D = K - l, K >= beta(x) - l for all parameters and all x = centre - reach .. centre +
-    reach: three numbers.  Each wave is taken where it is largest."""
-    d = [2 - 2 * l, Fraction(0), 2 - 2 * l]
+    reach.  Each wave is taken where it is largest."""
+    d = _scalar(problem.size, 2 - 2 * l)
     for term in problem.terms:
         y = _dot(term.k, centre) / PI[0]
         off = 4 * abs(y) * (PI[1] - PI[0])          # as PI[0] is not pi
@@ -137,11 +142,15 @@ def _spread(problem, l, centre, reach):
 
 def _with(d, size, k):
     """d with size times k k' added."""
-    return [d[0] + size * k[0] * k[0], d[1] + size * k[0] * k[1], d[2] + size * k[1] * k[1]]
+    return [[x + size * a * b for x, b in zip(row, k)] for row, a in zip(d, k)]
+
+
+def _scalar(n, x):
+    return [[x * (i == j) for j in range(n)] for i in range(n)]
 
 
 def _applied(d, x):
-    return [d[0] * x[0] + d[1] * x[1], d[1] * x[0] + d[2] * x[1]]
+    return [_dot(row, x) for row in d]
 
 
 def _dot(x, y):
@@ -157,8 +166,8 @@ def _over_pi(low, high):
 class Links:
     """The links from one point to another for the parameters of cells, each for those of one."""
 
-    def __init__(self, problem: Problem, largest: Fraction, here: Tuple[str, str],
-                 there: Tuple[str, str]) -> None:
+    def __init__(self, problem: Problem, largest: Fraction, here: Point,
+                 there: Point) -> None:
         """largest: B, of all parameters of the problem."""
         self.problem, self.largest, self.points = problem, largest, (here, there)
         self.crests = crests(problem)
@@ -166,11 +175,17 @@ class Links:
 
     def of(self, cell: Cell) -> Link:
         """The link for the parameters of a cell."""
-        slices = cell[0][2:], cell[1][2:]
+        slices = _slices(cell)
         if slices not in self.known:
             largest = min(self.largest, _largest(self.crests, *slices))
             self.known[slices] = Link.between(_slice(self.problem, *slices), largest, *self.points)
         return self.known[slices]
+
+
+def _slices(cell):
+    """The indices and the cuts of a cell along the parameters."""
+    along = slice(tree.PARAMETERS[0], tree.PARAMETERS[-1] + 1)
+    return cell[0][along], cell[1][along]
 
 
 def _slice(problem, index, cuts):
@@ -200,7 +215,7 @@ def clusters(problem: Problem, text: str) -> List[List[Cell]]:
     cells = [cell for kind, cell in tree.cells(text) if kind == "U"]
     gap = LEAST_GAP
     while gap < 1:
-        found = _joined(cells, [2 * h / gap for h in problem.half[-2:]])
+        found = _joined(cells, [2 * h / gap for h in problem.half[-problem.size:]])
         if len(found) <= MOST_CLUSTERS:
             return found
         gap *= 2
@@ -208,12 +223,13 @@ def clusters(problem: Problem, text: str) -> List[List[Cell]]:
 
 
 def _joined(cells: Sequence[Cell], sizes: Sequence[Fraction]) -> List[List[Cell]]:
-    """The cells in clusters.  A grid of squares covers the region; cells in one square or in two
-    squares that touch belong together.  sizes: how many squares a side of the region has."""
+    """The cells in clusters.  A grid of boxes covers the region; cells in one box or in two
+    boxes that touch belong together.  sizes: how many boxes a side of the region has."""
     squares: Dict[Tuple[int, ...], List[Cell]] = {}
     for cell in cells:
-        ranges = [range(int(size * i / (1 << k)), int(size * (i + 1) / (1 << k)) + 1)
-                  for i, k, size in zip(*cell, sizes)]
+        ranges = [range(int(size * index / (1 << cuts)), int(size * (index + 1) / (1 << cuts)) + 1)
+                  for index, cuts, size in zip(*(map(each.__getitem__, tree.ANGLES)
+                                                 for each in cell), sizes)]
         for square in product(*ranges):
             squares.setdefault(square, []).append(cell)
     found = []
@@ -221,9 +237,9 @@ def _joined(cells: Sequence[Cell], sizes: Sequence[Fraction]) -> List[List[Cell]
         members: Dict[Cell, None] = {}
         near = [first]
         while near:
-            m, n = near.pop()
-            members.update(dict.fromkeys(squares.pop((m, n), ())))
-            near += [square for square in product((m - 1, m, m + 1), (n - 1, n, n + 1))
+            place = near.pop()
+            members.update(dict.fromkeys(squares.pop(place, ())))
+            near += [square for square in product(*((i - 1, i, i + 1) for i in place))
                      if square in squares]
         if members:
             found.append(list(members))
@@ -231,18 +247,18 @@ def _joined(cells: Sequence[Cell], sizes: Sequence[Fraction]) -> List[List[Cell]
 
 
 def hull_of(problem: Problem, cells: Sequence[Cell], still: Shifts = ()) -> Box:
-    """The rectangle that holds the cells for all their parameters; still: as seen from what moves
+    """The box that holds the cells for all their parameters; still: as seen from what moves
     by such shifts."""
     if problem.shifts or any(map(any, still)):
         return _around(map(_boxes(problem, still), cells))
 
-    def side(axis: int) -> Ends:
-        middle, half = problem.centre[axis - 2], problem.half[axis - 2]
+    def side(axis: int, ends: Ends) -> Ends:
         low = min(Fraction(index[axis], 1 << cuts[axis]) for index, cuts in cells)
         high = max(Fraction(index[axis] + 1, 1 << cuts[axis]) for index, cuts in cells)
-        return middle - half + 2 * half * low, middle - half + 2 * half * high
+        start, length = ends[0], ends[1] - ends[0]
+        return start + length * low, start + length * high
 
-    return side(0), side(1)
+    return tuple(map(side, tree.ANGLES, problem.region))
 
 
 def _around(boxes):
@@ -270,7 +286,7 @@ def region_of(problem: Problem, cells: Sequence[Cell], links: Links, shifts: Shi
     is to move with the parameters, from there in their middle."""
     slices: Dict[tuple, List[Cell]] = {}
     for cell in cells:
-        slices.setdefault((cell[0][2:], cell[1][2:]), []).append(cell)
+        slices.setdefault(_slices(cell), []).append(cell)
     return _rounded(_around(links.of(some[0]).image(hull_of(problem, some, shifts))
                             for some in slices.values()))
 
@@ -281,11 +297,10 @@ def _rounded(image):
         return (Fraction((low - spare) * places // 1, places),
                 Fraction(-((-high - spare) * places // 1), places))
 
-    v0, v1 = image
-    return around(*v0), around(*v1)
+    return tuple(around(*ends) for ends in image)
 
 
-def wrong_letter(problem: Problem, largest: Fraction, xstar: Tuple[str, str], text: str,
+def wrong_letter(problem: Problem, largest: Fraction, xstar: Point, text: str,
                  parts: Sequence[Tree]) -> Optional[str]:
     """The letter of the first leaf of a tree over xstar that is linked to a part and may lead out
     of its region.  None: there is none.  largest: B; parts: a, b, ... of the proof."""

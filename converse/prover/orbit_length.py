@@ -9,9 +9,11 @@ follows short orbits only.
 No theorem rests on this choice: it decides how much is tried."""
 
 from itertools import product
+from operator import mul
 from typing import List, Optional, Sequence, Tuple
 
-from . import native
+from ..model.problem import rows
+from . import native, tree
 from .settings import Settings
 
 CUTS = native.lib.CV_MAX_CUTS           # of the thinnest prisms
@@ -58,15 +60,16 @@ def _all_proved(problem, xstar, end: Sequence[int], threads, is_late) -> bool:
 
 def _axis(problem) -> int:
     """The coordinate of v that the waves depend on."""
-    f00, _, f10, _ = problem.frame
-    return 0 if any(k0 * f00 + k1 * f10 for (k0, k1), *_ in problem.searched) else 1
+    columns = list(zip(*rows(problem.frame)))
+    return next(axis for axis, column in zip(tree.ANGLES, columns) if column is columns[-1] or any(
+        sum(map(mul, term.k, column)) for term in problem.searched))
 
 
 def _thinnest(axis, level, place, end) -> Tuple[List[int], List[int], int]:
     """The middle one of the thinnest prisms in a part, of 2^level, of the region."""
-    index, cuts = [0] * 5, [0] * 5
+    index, cuts = (list(each) for each in tree.ROOT)
     index[axis] = place if level == CUTS else (2 * place + 1) << (CUTS - level - 1)
-    for m, last in enumerate(end):
-        index[2 + m], cuts[2 + m] = last, CUTS
+    for along, last in zip(tree.PARAMETERS, end):
+        index[along], cuts[along] = last, CUTS
     cuts[axis] = CUTS
     return index, cuts, 0

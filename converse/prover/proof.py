@@ -29,7 +29,8 @@ class Tree:
     problem
         The map and the region.  Only regions of further starting points move with the parameters.
     xstar
-        The two angles of the starting point, in radians, as decimal strings; None: not yet chosen.
+        The angles of the starting point, two or three, in radians, as decimal strings; None: not
+        yet chosen.
     text
         One character for each prism, in preorder (docs/reference/proof-file.md).
     pending
@@ -38,7 +39,7 @@ class Tree:
     """
 
     problem: Problem
-    xstar: Optional[Tuple[str, str]] = None
+    xstar: Optional[Tuple[str, ...]] = None
     text: str = ""
     pending: Tuple[int, ...] = ()
 
@@ -126,7 +127,7 @@ class Proof(Kept):
         return self.trees[0].problem
 
     @property
-    def xstar(self) -> Optional[Tuple[str, str]]:
+    def xstar(self) -> Optional[Tuple[str, ...]]:
         """The starting point of the problem."""
         return self.trees[0].xstar
 

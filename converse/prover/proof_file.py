@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ..model.exact import decimal_text, exact
 from ..model.map import from_patch
-from ..model.problem import NAMES, Problem
+from ..model.problem import ANGLES, Problem
 from ..storage.kept import program_of, sealed
 from . import tree
 from .native import CONSTANTS, ORDINARY, Counts
@@ -56,10 +56,10 @@ def text_of(proof):
 
 def part_lines(name, part):
     """The lines of a Tree that has a name in its file."""
+    problem = part.problem
+    shifts = zip(*problem.shifts) if problem.shifts else [()] * problem.size
     return ["part: " + name, "xstar: " + " ".join(part.xstar),
-            _ends_line("v0", part.problem.v0, [s0 for s0, _ in part.problem.shifts]),
-            _ends_line("v1", part.problem.v1, [s1 for _, s1 in part.problem.shifts]),
-            *_tree_lines(part.text)]
+            *map(_ends_line, ANGLES, problem.region, shifts), *_tree_lines(part.text)]
 
 
 def _tree_lines(text):
@@ -75,8 +75,9 @@ def _untried(text):
 def proof_of(claim):
     """The Proof of a file, from its claim as the checker reads it."""
     header = claim.header
-    problem = Problem(map_of(claim, claim.names), *_ends(claim), header.get("comment", ()),
-                      claim.frame, "no" if claim.alone is None else claim.alone)
+    problem = Problem(map_of(claim, claim.names), comments=header.get("comment", ()),
+                      axes=claim.frame, alone="no" if claim.alone is None else claim.alone,
+                      **dict(zip(ANGLES, _ends(claim))))
     counts = {}
     for item in dataclasses.fields(Counts):
         numbers = tuple(map(int, header[item.name].split()))
@@ -119,7 +120,7 @@ def tree_of(claim, problem):
 
 
 def _ends(claim):
-    """The ranges of v0 and v1."""
+    """The ranges of v0, v1, ..."""
     return tuple((centre - half, centre + half) for centre, half in zip(claim.centre, claim.half))
 
 
@@ -131,16 +132,17 @@ def _divided(hints, text):
 
 def wave_lines(problem):
     """The fields of the header that say of which maps it is."""
-    return ["wave: %d %d %s %s" % (*term.k, term.phase, " ".join(
-        map(decimal_text, (term.p, *term.parts)))) for term in problem.terms]
+    return ["wave: " + " ".join([*map(str, term.k), str(term.phase), *map(
+        decimal_text, (term.p, *term.parts))]) for term in problem.terms]
 
 
 def _problem_lines(problem):
     """The fields of the header that say which problem it is."""
-    lines = wave_lines(problem) + ["frame: %d %d %d %d" % problem.frame,
+    lines = ["angles: 3"] * (problem.size > 2) + wave_lines(problem)
+    lines += ["frame: " + " ".join(map(str, problem.frame)),
               "alone: %s" % ("no" if problem.factor is None else problem.factor),
-              "odd about: " + ("no" if problem.odd is None else "%s %s" % problem.odd)]
-    return lines + [_ends_line(name, getattr(problem, name)) for name in NAMES[3:]]
+              "odd about: " + ("no" if problem.odd is None else " ".join(map(str, problem.odd)))]
+    return lines + list(map(_ends_line, ANGLES, problem.region))
 
 
 def _ends_line(name, ends, shifts=()):

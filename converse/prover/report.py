@@ -7,7 +7,7 @@ the theorem, in the parameters of the input, and goes on with what the theorem r
 from fractions import Fraction
 
 from ..model.exact import short_text
-from ..model.problem import IDENTITY, frame_text
+from ..model.problem import ANGLES, frame_text, identity
 from ..model.region import folds
 from ..model.statement import (TORUS, conditions, ended, indented, labelled, map_lines, one_angle,
                                parameters, whole)
@@ -17,6 +17,8 @@ from .report_1989 import MORE_TIME, deeper, quoted
 from .settings import DEPTH, DOUBLES, HOPELESS, LENGTH, REGION, THEOREM, TIME
 
 TINY = 1e-10                            # half-width of an angle, in units of pi
+GRAPH = {1: "", **{n: " J = P + S'(y) over %s angles, P constant, S periodic and C1" % these
+                   for n, these in ((2, "both"), (3, "all"))}}
 HUGE = 2 ** 60                          # MAX_AMPLITUDE of csrc/loewner/problem.c
 ENDED = {
     HOPELESS: "hopeless as seen: long orbits in thin prisms contradict nothing, as near a torus",
@@ -62,17 +64,15 @@ def _advised(text, file):
 
 def _theorem(proof):
     problem, part = proof.problem, proof.conclusion == REGION
-    torus = TORUS[problem.map.dimension]
+    torus = TORUS[problem.map.dimension] + GRAPH[problem.map.dimension]
     lines = [headline("THEOREM" + ", for a part of the torus only" * part, proof.restored, "prism"),
-             *map_lines(problem), "  has no " + torus
-             + " J = P + S'(y) over both angles, P constant, S periodic and C1"
-             * (problem.map.dimension == 2)]
+             *map_lines(problem), "  has no " + torus]
     if part:
         lines += indented(["whose orbit goes from x* = %s to y' = %s, where" % (
                                 _star(problem, proof.xstar), frame_text(problem.frame, "v%d")),
                             "%s (no other y' was examined)" % _region(problem)])
     lines = ended([*lines, *indented(conditions(problem, proof.at_once))])
-    if problem.map.dimension == 2 and not part and one_angle(problem) is not None:
+    if problem.map.dimension > 1 and not part and one_angle(problem) is not None:
         lines += ["  So the map of y%d alone has no rotational invariant circle."
                   % one_angle(problem)]
     return [*lines, ""]
@@ -82,7 +82,7 @@ def _theorem(proof):
 
 def _undecided(proof, file):
     problem, undecided = proof.problem, proof.undecided
-    torus = {1: "a rotational invariant circle", 2: "an invariant torus"}[problem.map.dimension]
+    torus = ("a " if problem.map.dimension == 1 else "an ") + TORUS[problem.map.dimension]
     flat = not problem.present
     lines = ["UNDECIDED: nothing is proved.  There may be %s (see converse-tori)." % torus,
              *map_lines(problem), *ended(indented(["was examined " + " ".join(
@@ -115,7 +115,7 @@ def _advice(proof, stuck, flat):
         return "amplitudes below 2^60, near 10^18: larger ones do not fit into its numbers"
     ended, texts = proof.ended, [each.text for each in proof.trees]
     across, along = (sum(text.count(axis) for text in texts for axis in axes)
-                     for axes in ("01", "234"))
+                     for axes in ("015", "234"))
     narrower = "a narrower range of parameters, or " * (
         any(map(any, proof.problem.parts)) and (ended != TIME or along > across))
     if ended == TIME:
@@ -165,13 +165,13 @@ def _grounds(proof, file):
 
 
 def _star(problem, xstar):
-    return xstar[0] if problem.map.dimension == 1 else "(%s, %s)" % tuple(xstar)
+    return xstar[0] if problem.map.dimension == 1 else "(%s)" % ", ".join(xstar)
 
 
 def _searched(proof):
     """Which successors of x* were examined, and why they are enough."""
     problem, used = proof.problem, proof.symmetries_used
-    if problem.frame == IDENTITY and not used and problem.full_torus:
+    if problem.frame == identity(problem.size) and not used and problem.full_torus:
         return "all y' that follow x*"
     return "the y' = %s that follow x*, %s%s" % (
         "v0" if problem.map.dimension == 1 else frame_text(problem.frame, "v%d"), _region(problem),
@@ -180,15 +180,16 @@ def _searched(proof):
 
 def _region(problem):
     """The region of a problem, and how it moves with the parameters."""
-    text = ", ".join(_between("v%d" % i, *ends) for i, ends in enumerate((problem.v0, problem.v1))
-                     if i < problem.map.dimension)
+    text = ", ".join(_between(*each) for each in zip(
+        ANGLES, *zip(*problem.region[:problem.map.dimension])))
     if not problem.shifts:
         return text
     names = problem.parameters or parameters(problem)
     ends = ["the upper end"] if names is None else [
         "the upper end of " + name for name, *_ in names]
     return "%s in the middle of the parameters, moved by %s" % (text, ", ".join(
-        "(%s, %s) at %s" % (*map(_angle, pair), end) for pair, end in zip(problem.shifts, ends)))
+        "(%s) at %s" % (", ".join(map(_angle, distances)), end)
+        for distances, end in zip(problem.shifts, ends)))
 
 
 def _between(name, low, high, error=Fraction(0)):

@@ -7,7 +7,7 @@ import os
 import time
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, Callable, Optional, Tuple, Union
+from typing import Any, Callable, Optional, Sequence, Union
 
 from ..model.exact import Number, decimal_text, exact
 from ..model.map import SymplecticMap
@@ -38,7 +38,7 @@ ALONE_SECONDS, ALONE_RATIO = 0.1, 10
 
 
 def prove(source: Union[SymplecticMap, Problem, None] = None, *,
-          xstar: Optional[Tuple[Number, Number]] = None,
+          xstar: Optional[Sequence[Number]] = None,
           jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
           backup: Optional[Path] = None, resume: Union[Proof, Path, None] = None,
           time_limit: float = math.inf, cpu_limit: float = math.inf,
@@ -51,8 +51,9 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
     ----------
     source : SymplecticMap or Problem, optional
         The maps; or a Problem, which also says where x_1 is looked for.
-    xstar : tuple of two exact numbers, optional
-        The angles of x*, in radians.  By default the program chooses them.
+    xstar : tuple of exact numbers, optional
+        The angles of x*, in radians: two, or three for a map of three angles.  By default the
+        program chooses them.
     jobs : int, optional
         How many threads: by default one per core; or how many tasks the executor gets at a time: by
         default as many as keep its workers busy.  The result does not depend on it.
@@ -114,7 +115,8 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
     elif source is None:
         raise TypeError("there must be a map or a problem, or a proof to resume")
     else:
-        before = Proof((Tree(Problem.of(source), None if xstar is None else _point(xstar)),),
+        problem = Problem.of(source)
+        before = Proof((Tree(problem, None if xstar is None else _point(xstar, problem.size)),),
                        Settings.of(given))
     with interruptible(), Backup(file if backup is None else backup, resumed=file) as backup_file:
         if resume is not None:
@@ -142,12 +144,13 @@ def ready(before: Proof) -> Proof:
     return before.with_tree(0, problem=problem, xstar=xstar)
 
 
-def _point(xstar):
-    """x* as a pair of decimal strings."""
-    if not isinstance(xstar, (tuple, list)) or len(xstar) != 2:
-        raise ValueError("xstar is two numbers, in radians, not %r" % (xstar,))
+def _point(xstar, size):
+    """x* as `size` decimal strings."""
+    if not isinstance(xstar, (tuple, list)) or len(xstar) != size:
+        raise ValueError("xstar is %s numbers, in radians, not %r"
+                         % ({2: "two", 3: "three"}[size], xstar))
     try:
-        return decimal_text(exact(xstar[0])), decimal_text(exact(xstar[1]))
+        return tuple(decimal_text(exact(x)) for x in xstar)
     except (TypeError, ValueError) as error:
         raise type(error)("xstar: %s" % error) from None
 

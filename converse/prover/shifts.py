@@ -9,6 +9,7 @@ least.  Doubles are enough, since no bound depends on the shifts."""
 import math
 from fractions import Fraction
 
+from ..model.problem import determinant, rows
 from . import tree
 
 # Points of an orbit to either side.  With 64, every k >= 0.972 takes half as many prisms as with
@@ -24,26 +25,31 @@ def best_shifts(problem, amplitude, xstar, text):
     parameter what it adds to v0 and v1 at its upper end, in units of pi.
 
     text: a tree over xstar for these amplitudes, and the region of the problem."""
-    waves = [(*map(float, term.k), math.pi * term.phase, float(p), *map(float, term.parts))
+    waves = [(term.k, math.pi * term.phase, float(p), [float(part) for part in term.parts])
              for term, p in zip(problem.terms, amplitude)]
-    star, sums = [float(x) for x in xstar], [[0.0] * (2 + len(problem.parts)) for _ in range(2)]
+    star, n, m = [float(x) for x in xstar], problem.size, len(problem.parts)
+    sums = [[0.0] * (n + m) for _ in range(n)]
     for v in _hardest(problem, text):
-        for rows in _ends(waves, problem.frame, star, v, FLAT_STEPS if problem.is_flat else STEPS):
-            size = sum(row[i] * row[i] for row in rows for i in range(2))
+        for moved in _ends(waves, problem.frame, star, v, FLAT_STEPS if problem.is_flat else STEPS):
+            size = sum(row[i] * row[i] for row in moved for i in range(n))
             if math.isfinite(size) and size > 0:
-                for i in range(2):
-                    for j in range(len(sums[i])):
-                        sums[i][j] += sum(row[i] * row[j] for row in rows) / size
-    (a, b, *right0), (_, d, *right1) = sums
-    a, d = a + LEAST * (a + d), d + LEAST * (a + d)
-    if not a * d > b * b:
+                for i in range(n):
+                    for j in range(n + m):
+                        sums[i][j] += sum(row[i] * row[j] for row in moved) / size
+    matrix = [row[:n] for row in sums]
+    trace = sum(matrix[i][i] for i in range(n))
+    for i in range(n):
+        matrix[i][i] += LEAST * trace
+    size = determinant(matrix)
+    if not size > 0:
         return ()
-    return tuple((_rounded((b * y - d * x) / (a * d - b * b)),
-                  _rounded((b * x - a * y) / (a * d - b * b))) for x, y in zip(right0, right1))
+    return tuple(tuple(_rounded(determinant([
+        [*row[:i], -right[n + j], *row[i + 1:]] for row, right in zip(matrix, sums)]) / size)
+        for i in range(n)) for j in range(m))       # Cramer's rule
 
 
 def _hardest(problem, text):
-    """Successors, (v0, v1) in units of pi: the centres of prisms that are undecided, or else of
+    """Successors, (v0, v1, ...) in units of pi: the centres of prisms that are undecided, or else of
     those that were cut most often or almost so."""
     cells = [cell for kind, cell in tree.cells(text) if kind == "U"]
     if not cells:
@@ -56,30 +62,31 @@ def _hardest(problem, text):
 
 def _ends(waves, frame, star, v, steps):
     """How both ends of the orbit through star and the successor, so many steps away, move with v0,
-    v1 and the parameters: for each end two rows, of its coordinates."""
-    f00, f01, f10, f11 = frame
-    n = len(waves[0]) - 4
-    next_ = [math.pi * (f00 * v[0] + f01 * v[1]), math.pi * (f10 * v[0] + f11 * v[1])]
-    still = [[0.0] * (2 + n) for _ in range(2)]
-    moved = [[math.pi * f00, math.pi * f01] + [0.0] * n, [math.pi * f10, math.pi * f11] + [0.0] * n]
-    for x, y, rows0, rows in (star, next_, still, moved), (next_, star, moved, still):
+    v1, ... and the parameters: for each end the rows of its coordinates."""
+    n, m = len(star), len(waves[0][3])
+    moved = [[math.pi * f for f in row] + [0.0] * m for row in rows(frame)]
+    next_ = [math.pi * sum(f * x for f, x in zip(row, v)) for row in rows(frame)]
+    still = [[0.0] * (n + m) for _ in range(n)]
+    for x, y, before, now in (star, next_, still, moved), (next_, star, moved, still):
         for _ in range(steps):
-            force, by_x = [0.0, 0.0], [0.0, 0.0, 0.0]
-            by_t = [[0.0] * n for _ in range(2)]
-            for k0, k1, phase, p, *parts in waves:
-                angle = k0 * y[0] + k1 * y[1] + phase
+            force, by_x, by_t = [0.0] * n, [[0.0] * n for _ in range(n)], [[0.0] * m for _ in star]
+            for k, phase, p, parts in waves:
+                angle = sum(a * b for a, b in zip(k, y)) + phase
                 sine, cosine = math.sin(angle), math.cos(angle)
-                for i, k in enumerate((k0, k1)):
-                    force[i] += k * p * cosine
-                    for m, part in enumerate(parts):
-                        by_t[i][m] += k * part * cosine
-                for i, kk in enumerate((k0 * k0, k0 * k1, k1 * k1)):
-                    by_x[i] -= kk * p * sine
-            x, y = y, [2 * y[i] - x[i] + force[i] for i in range(2)]
-            rows0, rows = rows, [
-                [2 * rows[i][j] - rows0[i][j] + by_x[i] * rows[0][j] + by_x[i + 1] * rows[1][j]
-                 + (by_t[i][j - 2] if j > 1 else 0.0) for j in range(2 + n)] for i in range(2)]
-        yield rows
+                for i, a in enumerate(k):
+                    force[i] += a * p * cosine
+                    for j, part in enumerate(parts):
+                        by_t[i][j] += a * part * cosine
+                    for j, b in enumerate(k):
+                        by_x[i][j] -= a * b * p * sine
+            x, y = y, [2 * y[i] - x[i] + force[i] for i in range(n)]
+            after = [[2 * b - a for a, b in zip(*pair)] for pair in zip(before, now)]
+            for i, row in enumerate(after):
+                for factor, other in zip(by_x[i], now):
+                    row[:] = [a + factor * b for a, b in zip(row, other)]
+                row[n:] = [a + b for a, b in zip(row[n:], by_t[i])]
+            before, now = now, after
+        yield now
 
 
 def _rounded(x):

@@ -8,12 +8,13 @@ is left is linked (links.py) to regions over others.  Nothing rests on how those
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from itertools import chain, compress, product
-from math import inf
+from itertools import chain, combinations, compress, product
+from math import inf, prod
 from typing import List, Tuple
 
 from ..model.exact import decimal_text
 from ..model.map import SymplecticMap
+from ..model.problem import rows
 from ..model.region import folds, halved, with_image
 from . import native, tree
 from .links import (Link, Links, Target, clusters, crests, hull_of, linked_tree, region_around,
@@ -30,7 +31,7 @@ MAX_MOVING_LEAVES = 50000               # Larger clusters are good enough where 
 # docs/explanation/method.md the crossed one with s = 0.58 needs the most points of orbits: 17
 # million, and 0.9 million in the trees of less than LOOK_DEPTH cuts.
 MAX_LOOK_POINTS, MAX_SHRINK_POINTS = 50_000_000, 5_000_000
-SMALL_AREA = Fraction(1, 10000)         # of all clusters, in pi squared: no deeper tree is grown
+SMALL_AREA = Fraction(1, 10000)         # of all clusters, in powers of pi: no deeper tree is grown
 MAX_SHRINK_RATIO = 0.7                  # of the undecided volume, from a tree to one DEEPER
 TRY_DEPTH, MAX_TRY_LEAVES = 16, 10000   # of trees that compare starting points
 MAX_PROOF_LEAVES = 40000                # of a tree that is tried to the end
@@ -95,8 +96,7 @@ def _look(problem, depth, xstar, survey):
         if grown is None:
             break
         found = clusters(problem, grown.text)
-        area = sum((b - a) * (d - c) for (a, b), (c, d)
-                   in (hull_of(problem, cells) for cells in found))
+        area = sum(prod(b - a for a, b in hull_of(problem, cells)) for cells in found)
         if best[1] and 2 * area > covered:
             break
         best, covered, cuts = (grown, found), area, cuts + DEEPER
@@ -164,7 +164,7 @@ class _Image:
         """The trees over the points, of `most` leaves each; [] if time was up."""
         parts = [self.part(point) for point in points]
         return self.survey([
-            native.Task(self.weakest.part((part.v0, part.v1)), settings, _text(point), longest)
+            native.Task(self.weakest.part(part.region), settings, _text(point), longest)
             for part, point in zip(parts, points)], most)
 
     def proof(self, point):
@@ -180,7 +180,7 @@ class _Image:
             return ()
         part = self.part(point)
         shifts = best_shifts(part, self.weakest.amplitude, _text(point), grown.text)
-        return tuple((s0, Fraction(0)) for s0, _ in shifts) if folds(part, _text(point)) else shifts
+        return tuple((s0, Fraction(0)) for s0, *_ in shifts) if folds(part, _text(point)) else shifts
 
 
 def _best_start(image, others):
@@ -219,8 +219,9 @@ def _best_start(image, others):
 def _ways(problem):
     """Directions of length 1: along the axes of the frame and across.  Where the waves depend on
     one combination of the angles, only along its gradient."""
-    columns = [problem.frame[i::2] for i in range(2)]
-    ways = [*columns, *([a + sign * b for a, b in zip(*columns)] for sign in (1, -1))]
+    columns = list(zip(*rows(problem.frame)))
+    ways = [*columns, *([a + sign * b for a, b in zip(*pair)]
+                        for pair in combinations(columns, 2) for sign in (1, -1))]
     if problem.is_flat:
         ways = [problem.present[0][0]]
     return [tuple(Fraction(sign * x, max(map(abs, way))) for x in way)
@@ -269,8 +270,8 @@ def _weakest(problem):
 
 def _reaches(cell, signs):
     """Does the cell reach that corner of the parameters?"""
-    return all(i == (0 if sign < 0 else (1 << k) - 1)
-               for sign, i, k in zip(signs, cell[0][2:], cell[1][2:]))
+    return all(cell[0][axis] == (0 if sign < 0 else (1 << cell[1][axis]) - 1)
+               for sign, axis in zip(signs, tree.PARAMETERS))
 
 
 def _score(grown, weight) -> Tuple[float, int]:

@@ -1,7 +1,7 @@
 """The tree of a proof as text: one character per prism, in preorder.
 
-0 and 1 are cuts along v0 and v1; 2, 3 and 4 along the parameters (a, b and c, or where they move
-together 2 along all of them); the lower half comes first.  The leaves are P (proved), S (skipped by
+0 and 1 are cuts along v0 and v1, 5 along v2; 2, 3 and 4 along the parameters (a, b and c, or where
+they move together 2 along all of them); the lower half comes first.  The leaves are P (proved), S (skipped by
 symmetry), a lower-case letter (linked to the part of the proof that it names), U (undecided) and ?
 (untried); where a text ends too early, untried prisms are missing.
 """
@@ -13,15 +13,16 @@ from fractions import Fraction
 from itertools import accumulate, zip_longest
 from string import ascii_lowercase
 
-CUTS = "01234"
+CUTS = "012345"
+PARAMETERS, ANGLES = range(2, 5), (0, 1, 5)     # of these
 UNTRIED = "?"
 LETTERS = ascii_lowercase
 KINDS = "PSU" + UNTRIED + LETTERS
 UNDECIDED_OR_UNTRIED = re.compile("[U?]")
-ROOT = (0,) * 5, (0,) * 5
+ROOT = (0,) * len(CUTS), (0,) * len(CUTS)
 NODES = "cuts", "proved", "symmetric", "undecided", "linked"    # as native.Counts calls them
 
-# centre and half: (v0, v1), in units of pi, as of prisms()
+# centre and half: (v0, v1, ...), in units of pi, as of prisms()
 Leaf = namedtuple("Leaf", "kind centre half depth")
 
 
@@ -31,7 +32,7 @@ class TreeError(ValueError):
 
 class Walk:
     """Follows a tree that is still growing.  A cell (index, cuts) is slice index[k], counted from
-    the lower end, of the 2^cuts[k] equal slices of the region along each of the five axes k."""
+    the lower end, of the 2^cuts[k] equal slices of the region along each of the axes k of CUTS."""
 
     def __init__(self, pending=(ROOT,)):
         self.pending = list(pending)        # the next one last
@@ -67,34 +68,31 @@ def cells(text):
 
 
 def prisms(problem, still=()):
-    """A function from cells to (centre, half), the exact sides (v0, v1) in units of pi.
+    """A function from cells to (centre, half), the exact sides (v0, v1, ...) in units of pi.
 
     Where the problem has shifts the prism moves with the parameters: these are the sides of the
-    least rectangle that holds it for all parameters of the cell.  still: shifts of something else,
-    from which the prism is looked at; only what the problem's shifts differ from these moves."""
-    pairs = zip_longest(problem.shifts, still, fillvalue=(0, 0))
+    least box that holds it for all parameters of the cell.  still: shifts of something else, from
+    which the prism is looked at; only what the problem's shifts differ from these moves."""
+    pairs = zip_longest(problem.shifts, still, fillvalue=(0,) * problem.size)
     moves = [tuple(a - b for a, b in zip(*pair)) for pair in pairs]
-    moves = moves if any(map(any, moves)) else []
-    half = {}                               # (axis, cuts) -> half-width
-    centre = {}                             # (axis, slice, cuts) -> centre
-
-    def side(axis, i, k):
-        if (axis, k) not in half:
-            half[axis, k] = problem.half[axis] / (1 << k)
-        if (axis, i, k) not in centre:
-            centre[axis, i, k] = (problem.centre[axis]
-                                  + half[axis, k] * (2 * i + 1 - (1 << k)))
-        return centre[axis, i, k], half[axis, k]
+    moves = list(enumerate(moves, PARAMETERS[0])) if any(map(any, moves)) else []
+    sides = list(zip(ANGLES, problem.centre[-problem.size:], problem.half[-problem.size:]))
+    known = {}                              # (axis, slice, cuts) -> centre and half-width
 
     def prism(cell):
-        (i, j, *_), (k, l, *_) = cell
-        (c0, h0), (c1, h1) = side(-2, i, k), side(-1, j, l)
-        for (s0, s1), i, k in zip(moves, cell[0][2:], cell[1][2:]):
-            width = Fraction(1, 1 << k)
-            t = (2 * i + 1) * width - 1
-            c0, c1 = c0 + s0 * t, c1 + s1 * t
-            h0, h1 = h0 + abs(s0) * width, h1 + abs(s1) * width
-        return (c0, c1), (h0, h1)
+        index, cuts = cell
+        found = []
+        for axis, centre, half in sides:
+            i, k = place = index[axis], cuts[axis]
+            if (axis, place) not in known:
+                width = half / (1 << k)
+                known[axis, place] = centre + width * (2 * i + 1 - (1 << k)), width
+            found.append(known[axis, place])
+        for axis, shifts in moves:
+            width = Fraction(1, 1 << cuts[axis])
+            t = (2 * index[axis] + 1) * width - 1
+            found = [(c + s * t, h + abs(s) * width) for (c, h), s in zip(found, shifts)]
+        return tuple(zip(*found))
 
     return prism
 

@@ -120,14 +120,16 @@ def test_files_that_are_no_inputs(tmp_path):
         {"k": [k], "amplitude": [1, 2] if k < 3 else {"e": 1, "f": 1}} for k in (1, 2, 3)]},
      "there are 4 parameters; give 3 at most"),
     (one(phase="tan"), "phase of harmonic 1: 'tan' is not"),
-    (one(k=[1, 2, 3]), "k: maps have one angle or two, not 3"),
+    (one(k=[1, 2, 3, 4]), "k: maps have one to three angles, not 4"), (one(k=[]), "angles, not 0"),
     (one(k=[1.5, 0]), "k: this is not a list of integers"),
     (one(k=[101, 0]), "k = (101, 0) is out of range"),
     (one(amplitude="0." + "3" * 1000), "the number 0.333333333333333333... has 1002"),
     (one(k=[0, 0]), "k = (0, 0) is not a harmonic"), (one(k=[True, 0]), '"k": this is true'),
     ({"harmonics": [A, {"k": [1], "amplitude": 1}]}, "harmonic 2, k: the number of angles is not"),
     ({"harmonics": [A, {**A, "phase": 2}]}, "harmonics 1 and 2 are the same; add up"),
-    ({"v1": 1, "harmonics": [{"k": [1], "amplitude": 1}]}, "v1: a map of the circle has no second"),
+    ({"v1": 1, "harmonics": [{"k": [1], "amplitude": 1}]}, "v1: the map has no such angle; leave it"),
+    ({"v2": 1, **one()}, "v2: the map has no such angle; leave it"),
+    ({"v2": 1, **one(k=[1, 0, 0])}, "no wave depends on a third angle; leave v2 out"),
     ({"v0": [1, 0], **one()}, "v0: the lower end, 1, is above"),
     ({"comments": {}, **one()}, "comments: this value has another type")])
 def test_mistakes(value, words):

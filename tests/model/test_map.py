@@ -61,17 +61,22 @@ def test_a_word_without_a_sign_is_refused(word):
 
 
 def test_keys_of_a_fourier_map():
-    """k or (k, phase); a third integer is no phase, and integers are those of any library."""
+    """k or (k, phase); a third integer is no phase but a third k, and integers are those of any
+    library."""
     one = FourierMap({np.int64(1): 1, (np.int32(3), "-1/2"): "0.1"})
     assert one == FourierMap({1: np.int64(1), (3, Fraction(-1, 2)): "0.1"}) and one.dimension == 1
     assert one.harmonics == ((1, 0, 0), (3, 0, Fraction(-1, 2)))
     assert {type(k) for wave in one.harmonics for k in wave[:2]} == {int}
     two = FourierMap({(1, 3): 1, ((0, 1), "1/3"): 1})
     assert two.harmonics == ((1, 3, 0), (0, 1, Fraction(1, 3)))
-    for key in (1, 0, 1), (1, 0, np.int64(1)):
-        with pytest.raises(TypeError, match="harmonic 1, .*1.*, looks like a third k; "):
-            FourierMap({key: 1})
-    for key in (1, True), True, "1", ((1, 0), 1), (1.0, 0):
+    three = FourierMap({(1, 0, 1): 1, ((0, np.int64(1), 0), "1/3"): 1, (0, 1, 0, "+cos"): 2})
+    assert three.dimension == 3 and three.harmonics == (
+        (1, 0, 1, 0), (0, 1, 0, Fraction(1, 3)), (0, 1, 0, Fraction(-1, 2)))
+    assert FourierMap({(1, 0, 0): 1, ((1, 1, 0), "1/3"): 1}) == \
+        FourierMap({(1, 0): 1, ((1, 1), "1/3"): 1})     # nothing depends on y2
+    with pytest.raises(ValueError, match="harmonic 2 has 3 integers k, .*; a phase that is an int"):
+        FourierMap({(1, 0): 1, (0, 1, 1): 1})           # 1 was meant as a phase
+    for key in (1, 0, 1, 1), (1, 0, 1, 1, "1"), (1, True), True, "1", ((1, 0), 1), (1.0, 0):
         with pytest.raises((TypeError, ValueError)):
             FourierMap({key: 1})
 

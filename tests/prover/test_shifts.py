@@ -91,7 +91,7 @@ def test_shifts_of_parts_are_exact():
 # ---- prisms and links
 
 def random_cell(rng, parameters):
-    cuts = [rng.randrange(5) if axis < 2 + parameters else 0 for axis in range(5)]
+    cuts = [rng.randrange(5) if axis < 2 + parameters else 0 for axis in range(6)]
     return tuple(rng.randrange(1 << k) for k in cuts), tuple(cuts)
 
 
