@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, List, Optional, Tuple
 
 from ..model.exact import decimal_text
-from ..model.problem import Problem
+from ..model.problem import Problem, rows
 from ..storage.files import ConverseError
 from ..version import __version__
 from .settings import Settings
@@ -156,7 +156,7 @@ class Task:
 
     problem: Problem
     settings: Settings
-    xstar: Optional[Tuple[str, str]] = None
+    xstar: Optional[Tuple[str, ...]] = None
     longest: int = ORDINARY
 
 
@@ -218,14 +218,12 @@ def native_problem(problem, owners):
          "part": [text(part if term in problem.searched else 0) for part in term.parts]}
         for term in problem.terms])
     owners.append(waves)
-    ends = problem.v0, problem.v1
-    f = problem.frame
     return ffi.new("cv_problem *", {
-        "n_angles": 2, "n_waves": len(problem.terms), "n_parameters": len(problem.parts), "waves": waves,
-        "angle": [text((low + high) / 2) for low, high in ends],
-        "half": [text((high - low) / 2) for low, high in ends],
-        "shift": [[text(pair[i]) for pair in problem.shifts] for i in range(2)],
-        "frame": [f[:2], f[2:]], "odd": problem.odd is not None})
+        "n_angles": problem.size, "n_waves": len(problem.terms), "n_parameters": len(problem.parts),
+        "waves": waves, "angle": [text((low + high) / 2) for low, high in problem.region],
+        "half": [text((high - low) / 2) for low, high in problem.region],
+        "shift": [list(map(text, shifts)) for shifts in zip(*problem.shifts)],
+        "frame": rows(problem.frame), "odd": problem.odd is not None})
 
 
 def _nearly(phase):
@@ -239,7 +237,7 @@ class Search:
 
     def __init__(self, task):
         owners, settings = [], task.settings
-        handle = ffi.new("cv_search **")
+        handle, self.size = ffi.new("cv_search **"), task.problem.size
         check(lib.cv_search_new(
             handle, native_problem(task.problem, owners),
             [native_text(x, owners) for x in task.xstar] if task.xstar else ffi.NULL,
@@ -250,7 +248,7 @@ class Search:
 
     @property
     def xstar(self):
-        return tuple(_decimal(lib.cv_xstar(self.handle, i)) for i in range(2))
+        return tuple(_decimal(lib.cv_xstar(self.handle, i)) for i in range(self.size))
 
     @property
     def constants(self):
