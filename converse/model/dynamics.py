@@ -134,8 +134,8 @@ class Dynamics:
             As of map().
         plane
             The coordinates to the right and upwards.  With one angle "y" and "J" (with a potential
-            of converse.orbits "x" and "p").  With two angles two of "y0", "y1", "J0", "J1", by
-            default "y0" and "J0": the portrait is a projection.
+            of converse.orbits "x" and "p").  With more angles two of "y0", "y1", ..., "J0", ...,
+            by default "y0" and "J0": the portrait is a projection.
         ax
             Axes of matplotlib, which are drawn into and returned; with None a Figure is returned.
         style
@@ -157,9 +157,10 @@ class Dynamics:
         if not np.isfinite(eps):
             raise ValueError("eps is a finite number, not %r" % (eps,))
         y, J = np.broadcast_arrays(np.asarray(y, float), np.asarray(J, float))
-        if self.dimension == 2 and y.shape[-1:] != (2,):
-            raise ValueError("points of two angles are arrays of shape (..., 2), not %r"
-                             % (y.shape,))
+        n = self.dimension
+        if n > 1 and y.shape[-1:] != (n,):
+            raise ValueError("points of %d angles are arrays of shape (..., %d), not %r"
+                             % (n, n, y.shape))
         return y, J
 
 

@@ -9,7 +9,7 @@ from typing import IO, NoReturn, Union
 
 from .exact import exact
 from .map import MOST_CHARACTERS, MuldoonMap, affine
-from .problem import ANGLES, InputError, Problem
+from .problem import ANGLES, WHOLE, InputError, Problem, ranges
 
 LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documentation calls them
 INTEGER = re.compile("-?[0-9]{1,9}")
@@ -212,4 +212,4 @@ def _problem(value, name):
     made = affine(waves, [harmonic["amplitude"] for harmonic in value["harmonics"]],
                   value.get("parameters", {}), name)
     return Problem(made, comments=value.get("comments", ()),
-                   **{angle: value[angle] for angle in ANGLES if angle in value})
+                   **ranges(value.get(angle, WHOLE) for angle in ANGLES))

@@ -344,8 +344,9 @@ def FourierMap(harmonics: Mapping[Any, Amplitude], *, name: str = "",
     ----------
     harmonics
         {k: p} or {(k, phase): p}.  k is an integer for one angle, a pair (k0, k1) for two, (k0, k1,
-        k2) for three; the phase is as of SymplecticMap.  An amplitude p is a number, a range (low, high), or {name:
-        factor} of parameters, with the name "constant" for what no parameter moves.
+        k2) for three; the phase is as of SymplecticMap.  An amplitude p is a number, a range (low,
+        high), or {name: factor} of parameters, with the name "constant" for what no parameter
+        moves.
 
         ========  ==============  ==================
         phase     term of V       term of J' (one k)

@@ -103,6 +103,13 @@ class FourierSum(NamedTuple):
         return sum_text(parts)
 
 
+def two_at_most(dimension: int) -> None:
+    """ValueError: tori or orbits are to be found of a map of three angles."""
+    if dimension > 2:
+        raise ValueError("tori and orbits are looked for in one angle or two; this map has three, "
+                         "of which converse and converse-map prove that there is no torus")
+
+
 def angle_names(letter: str, dimension: int) -> Tuple[str, ...]:
     """The names of the angles, or of the momenta, of a map."""
     return tuple(letter + str(i) for i in range(dimension)) if dimension > 1 else (letter,)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from math import gcd, isqrt
-from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
 from ..storage.files import ConverseError, plain
 from .exact import Ends, Number, decimal_text, integer, is_decimal, is_integer, outward, range_text
@@ -129,8 +129,7 @@ class Problem:
         ValueError
             The region or the shifts are not as described.
         """
-        return replace(self, **dict(zip(ANGLES, region)), axes=self.frame, shifts=shifts,
-                       comments=())
+        return replace(self, **ranges(region), axes=self.frame, shifts=shifts, comments=())
 
     def tied(self) -> "Problem":
         """The problem whose parameters move together, from all lower to all upper ends.
@@ -349,6 +348,11 @@ class Problem:
                    in zip(self.region, periods(self.axes or identity(self.size))))
 
 
+def ranges(region: Iterable[Ends]) -> Dict[str, Any]:
+    """The arguments of Problem that a region makes."""
+    return dict(zip(ANGLES, region))
+
+
 def identity(n: int) -> Frame:
     """The frame of n angles that changes nothing."""
     return tuple(int(i == j) for i in range(n) for j in range(n))
@@ -360,7 +364,7 @@ def rows(frame: Frame) -> Tuple[Tuple[int, ...], ...]:
     return tuple(frame[i:i + n] for i in range(0, n * n, n))
 
 
-def determinant(matrix: Sequence[Sequence]) -> Any:
+def determinant(matrix: Sequence[Any]) -> Any:
     """The determinant of a matrix, by its first row."""
     return sum((-1) ** j * x * determinant([row[:j] + row[j + 1:] for row in matrix[1:]])
                for j, x in enumerate(matrix[0]) if x) if matrix else 1
@@ -376,7 +380,7 @@ def inverse(frame: Frame) -> Matrix:
 
 
 @lru_cache(64)
-def moves(frame: Frame) -> List[Numbers]:
+def moves(frame: Frame) -> List[Any]:
     """Vectors that generate those, in units of pi, by which v may be moved: x_1 = frame.v stays the
     same point of the torus.  Of each the components before the i-th are 0, i = 0, 1, ..."""
     pivots, _ = echelon([[2 * x for x in column] for column in zip(*inverse(frame))],

@@ -16,7 +16,7 @@ from typing import List, Optional, Sequence, Tuple
 from .exact import Ends, pi_bounds, rounded, sine_bounds
 from .lattice import echelon
 from .map import HIGHEST
-from .problem import ANGLES, IDENTITY, Frame, Problem, identity, inverse, moves, periods, rows
+from .problem import IDENTITY, Frame, Problem, identity, inverse, moves, periods, ranges, rows
 
 EXCHANGED = 0, 1, 1, 0              # the frame with v0 and v1 for the second angle and the first
 DIAGONALS = 1, 1, 1, -1             # v0 along the diagonal, v1 across it
@@ -156,8 +156,7 @@ def reduced(problem: Problem, xstar: Point, frame: Optional[Frame] = None) -> Pr
               rounded(high + period0 / 2 + MARGIN, PLACES, up=True))
     if problem.frame == DIAGONALS and exchangeable(problem, xstar):
         others = [Fraction(1)]
-    return replace(problem, v0=v0, **{
-        name: (Fraction(0), most) for name, most in zip(ANGLES[1:], others)})
+    return replace(problem, **ranges([v0, *((Fraction(0), period) for period in others)]))
 
 
 def _frame(problem, xstar):

@@ -40,10 +40,11 @@ def coordinates(system, eps, x, p, steps):
     if x is None:
         x, p = (system.period * each for each in starts(system.dimension))
     x, p = np.broadcast_arrays(np.asarray(x, float), np.asarray(p, float))
-    if system.dimension == 2 and x.shape[-1:] != (2,):
-        raise ValueError("initial points of two angles are arrays of shape (..., 2), not %r"
-                         % (x.shape,))
-    orbits = x.size // system.dimension
+    n = system.dimension
+    if n > 1 and x.shape[-1:] != (n,):
+        raise ValueError("initial points of %d angles are arrays of shape (..., %d), not %r"
+                         % (n, n, x.shape))
+    orbits = x.size // n
     if not 0 < orbits * (abs(steps) + 1) <= MOST:
         raise ValueError("a portrait has 1 to %d points, not %d orbits of %d"
                          % (MOST, orbits, abs(steps) + 1))

@@ -17,7 +17,7 @@ from .._native import ffi, lib
 from ..model.dynamics import Dynamics
 from ..model.exact import Ends, root_bounds
 from ..model.map import SymplecticMap
-from ..model.potential import FourierSum, from_terms, per_period, product
+from ..model.potential import FourierSum, from_terms, per_period, product, two_at_most
 from ..prover.native import check
 from ..storage.files import plain
 from .limits import MIN_STEP_RATIO
@@ -203,9 +203,11 @@ class Fourier(Potential):
     def of(cls, source: FourierSum, name: str = "fourier",
            start: Optional[Tuple[float, ...]] = None, factor: str = PER_PERIOD,
            period: float = 1.0) -> "Fourier":
-        """The potential of a FourierSum; without a start a maximum of V is looked for."""
+        """The potential of a FourierSum; without a start a maximum of V is looked for.
+        ValueError: it has three angles, or is too large for doubles."""
+        two_at_most(source.dimension)
         made = cls(name, start or (0.0,) * source.dimension, lib.CV_FOURIER, source, factor, period)
-        made.curvature                  # ValueError: too large for doubles
+        made.curvature
         return made if start else replace(made, start=made._maximum())
 
     def __reduce__(self):

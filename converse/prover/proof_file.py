@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ..model.exact import decimal_text, exact
 from ..model.map import from_patch
-from ..model.problem import ANGLES, Problem
+from ..model.problem import ANGLES, Problem, ranges
 from ..storage.kept import program_of, sealed
 from . import tree
 from .native import CONSTANTS, ORDINARY, Counts
@@ -77,7 +77,7 @@ def proof_of(claim):
     header = claim.header
     problem = Problem(map_of(claim, claim.names), comments=header.get("comment", ()),
                       axes=claim.frame, alone="no" if claim.alone is None else claim.alone,
-                      **dict(zip(ANGLES, _ends(claim))))
+                      **ranges(_ends(claim)))
     counts = {}
     for item in dataclasses.fields(Counts):
         numbers = tuple(map(int, header[item.name].split()))
@@ -92,6 +92,8 @@ def proof_of(claim):
     hints, grown = tuple(map(int, header["pending"].split())), []
     for each in (first, *[tree_of(part, problem) for part in claim.parts]):
         tree.complete(each.text)        # TreeError, a ValueError: it is not a tree
+        if problem.size == 2 and tree.CUTS[tree.ANGLES[2]] in each.text:
+            raise ValueError("a cut along v2 (5), and the map has no such angle")
         if each.problem.shifts and "S" in each.text:
             raise ValueError("a prism of a part is skipped (S), though the part's region moves")
         mine, hints = _divided(hints, each.text) if claim.parts else (hints, ())

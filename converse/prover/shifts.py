@@ -49,8 +49,8 @@ def best_shifts(problem, amplitude, xstar, text):
 
 
 def _hardest(problem, text):
-    """Successors, (v0, v1, ...) in units of pi: the centres of prisms that are undecided, or else of
-    those that were cut most often or almost so."""
+    """Successors, (v0, v1, ...) in units of pi: the centres of prisms that are undecided, or else
+    of those that were cut most often or almost so."""
     cells = [cell for kind, cell in tree.cells(text) if kind == "U"]
     if not cells:
         most = tree.most_cuts(text)

@@ -180,7 +180,8 @@ class _Image:
             return ()
         part = self.part(point)
         shifts = best_shifts(part, self.weakest.amplitude, _text(point), grown.text)
-        return tuple((s0, Fraction(0)) for s0, *_ in shifts) if folds(part, _text(point)) else shifts
+        half = folds(part, _text(point))
+        return tuple((s0, Fraction(0)) for s0, *_ in shifts) if half else shifts
 
 
 def _best_start(image, others):

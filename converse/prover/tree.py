@@ -1,9 +1,9 @@
 """The tree of a proof as text: one character per prism, in preorder.
 
 0 and 1 are cuts along v0 and v1, 5 along v2; 2, 3 and 4 along the parameters (a, b and c, or where
-they move together 2 along all of them); the lower half comes first.  The leaves are P (proved), S (skipped by
-symmetry), a lower-case letter (linked to the part of the proof that it names), U (undecided) and ?
-(untried); where a text ends too early, untried prisms are missing.
+they move together 2 along all of them); the lower half comes first.  The leaves are P (proved), S
+(skipped by symmetry), a lower-case letter (linked to the part of the proof that it names), U
+(undecided) and ? (untried); where a text ends too early, untried prisms are missing.
 """
 
 import re

@@ -25,7 +25,7 @@ import numpy as np
 
 from ..model.exact import Ends
 from ..model.map import SymplecticMap, from_patch
-from ..model.potential import FourierSum
+from ..model.potential import FourierSum, two_at_most
 from ..model.problem import Problem
 from ..model.statement import potential_text
 from ..storage import files
@@ -45,8 +45,9 @@ def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
 
     Its dimension is 1 if all these waves have k1 = 0, else 2.
     TypeError: it is not a map, nor the problem of one.  ValueError: there is more than one
-    parameter, or no wave."""
+    parameter, or no wave, or there are three angles."""
     problem = Problem.of(source)
+    two_at_most(problem.map.dimension)
     parts = [m for m, part in enumerate(problem.parts) if any(part)]
     if len(parts) > 1:
         raise ValueError("the problem has %d parameters where one is possible; make the other "

@@ -5,6 +5,7 @@ import itertools
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from operator import mul
 
 import pytest
 from conftest import around
@@ -16,7 +17,7 @@ from converse.model import inputs
 from converse.model.exact import decimal_text
 from converse.model.inputs import read_input
 from converse.model.map import THESIS, MuldoonMap, SymplecticMap
-from converse.model.problem import IDENTITY, InputError
+from converse.model.problem import IDENTITY, InputError, determinant, inverse, rows
 from converse.prover import native
 
 GOOD = "0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"
@@ -316,25 +317,48 @@ def test_odd_about_a_point(waves):
     ([(1, 0), (0, 1), (1, 1)], (0, 0)), ([(1, 0, "1/2"), (0, 1, "1/2")], ("1/2", "1/2")),
     ([(1, 0, "1/2"), (0, 1, "1/2"), (1, 1, "1/2")], None),
     ([(2, 0, "1/3"), (4, 0, "2/3")], ("5/6", 0)),
-    ([(1, 0), (2, 0, "1/2")], None), ([(1, -1, "1/2"), (1, 1)], ("3/4", "1/4"))])
+    ([(1, 0), (2, 0, "1/2")], None), ([(1, -1, "1/2"), (1, 1)], ("3/4", "1/4")),
+    ([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)], (0, 0, 0)),
+    ([(1, 0, 0), (0, 1, 0, "1/2"), (0, 0, 1, "+cos"), (1, 1, 1, "1/2")], None),
+    ([(1, 1, 0, "1/2"), (0, 1, -2), (3, 0, 1, "1/4")], (0, "1/2", "3/4"))])
 def test_what_is_odd(waves, shifts):
-    odd = Problem(SymplecticMap(waves, [1] * len(waves))).odd
-    assert odd == (shifts and tuple(map(Fraction, shifts)))
+    problem = Problem(SymplecticMap(waves, [1] * len(waves)))
+    assert problem.odd == (shifts and tuple(map(Fraction, shifts)))
+    assert not shifts or all((sum(map(mul, k, problem.odd)) + phase).denominator == 1
+                             for *k, phase in problem.waves)
 
 
 @pytest.mark.parametrize("waves, frame", [
     ([(1, 1)], (1, 0, -1, 1)), ([(1, -1)], (1, 0, 1, -1)), ([(-1, 1)], None),
     ([(2, -4), (-3, 6)], None),
-    ([(5, 3), (-10, -6, "1/2")], None), ([(1, 0)], IDENTITY), ([(0, 3), (0, -1)], IDENTITY),
+    ([(5, 3), (-10, -6, "1/2")], None), ([(2, -3, 5), (-4, 6, -10)], None),
+    ([(0, 3, 1)], None), ([(1, 0)], IDENTITY), ([(0, 3), (0, -1)], IDENTITY),
     ([(1, 1), (1, -1)], IDENTITY), (THESIS, IDENTITY)])
 def test_frames(waves, frame):
     """The first column moves nothing that a wave feels, where there is a use for that."""
     f = Problem(SymplecticMap(waves, [1] * len(waves))).frame
+    if len(f) == 9:
+        columns = [f[i::3] for i in range(3)]
+        felt = [[sum(map(mul, k, column)) for column in columns] for k in waves]
+        assert all(not first and not second and third for first, second, third in felt)
+        assert determinant(rows(f)) in (1, -1)
+        return
     assert abs(f[0] * f[3] - f[1] * f[2]) == 1
     if frame is None:
         assert all(k0 * f[0] + k1 * f[2] == 0 for k0, k1, *_ in waves)
     else:
         assert f == frame
+
+
+@given(st.lists(st.integers(-5, 5), min_size=9, max_size=9))
+def test_the_inverse_of_a_frame(frame):
+    matrix = rows(tuple(frame))
+    (a, b, c), (d, e, f), (g, h, i) = matrix
+    size = a * e * i + b * f * g + c * d * h - c * e * g - b * d * i - a * f * h
+    assert determinant(matrix) == size
+    if size:
+        assert [[sum(map(mul, row, column)) for column in zip(*inverse(tuple(frame)))]
+                for row in matrix] == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
 
 
 def test_frames_of_the_thesis():

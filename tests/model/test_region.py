@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 import mpmath
 import pytest
@@ -17,6 +18,8 @@ from truth import TORTURE, mp, rng_for
 
 CASES = 200 * TORTURE
 STAR = "0.858028", "0.858028"
+THREE = SymplecticMap([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)], ["0.2", "0.2", "0.2", "0.4"],
+                      [["0.01", "0.01", "0.01", "0.02"]])
 
 
 def line(low, high=None, **ranges):
@@ -26,32 +29,40 @@ def line(low, high=None, **ranges):
 
 
 def draw(rng):
-    """A problem of waves of any kind, with up to three parameters, and x*."""
-    waves = list({(rng.randrange(-3, 4) or 1, rng.randrange(-3, 4), Fraction(rng.randrange(8), 7))
-                  for _ in range(rng.randrange(1, 5))})
+    """A problem of waves of any kind, in two angles or three, with up to three parameters, and
+    x*."""
+    n = rng.choice((2, 3))
+    waves = list({(rng.randrange(-3, 4) or 1, *(rng.randrange(-3, 4) for _ in range(1, n)),
+                   Fraction(rng.randrange(8), 7)) for _ in range(rng.randrange(1, 5))})
+    n = 2 if not any(any(wave[2:-1]) for wave in waves) else n
     amplitude = [Fraction(rng.randrange(-999, 999) or 1, 1000) for _ in waves]
     parts = [[Fraction(rng.randrange(-99, 99), 1000) for _ in waves]
              for _ in range(rng.randrange(4))]
-    star = tuple(str(Fraction(rng.randrange(-4000, 4000), 1000) * 1.0) for _ in range(2))
+    star = tuple(str(Fraction(rng.randrange(-4000, 4000), 1000) * 1.0) for _ in range(n))
     return Problem(SymplecticMap(waves, amplitude, parts), alone=None), star
 
 
-def frames(rng):
+def random_frame(rng, n):
     while True:
-        frame = tuple(rng.randrange(-4, 5) for _ in range(4))
-        if frame[0] * frame[3] != frame[1] * frame[2]:
-            yield frame
+        frame = tuple(rng.randrange(-4, 5) for _ in range(n * n))
+        if mpmath.det(matrix(frame)):
+            return frame
+
+
+def matrix(frame):
+    n = math.isqrt(len(frame))
+    return mpmath.matrix([frame[i:i + n] for i in range(0, n * n, n)])
 
 
 def successors(problem, star, t):
     """x[-1] + x[1] of every orbit through x*, in units of pi."""
     result = []
-    for i in range(2):
+    for i in range(problem.size):
         force = mp(0)
-        for wave, p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
+        for (*k, phase), p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
             size = mp(p + sum((e * g for e, g in zip(t, parts)), Fraction(0)))
-            angle = wave[0] * mp(star[0]) + wave[1] * mp(star[1]) + mp(wave[2]) * mpmath.pi
-            force += size * wave[i] * mpmath.cos(angle)
+            angle = sum(a * mp(x) for a, x in zip(k, star)) + mp(phase) * mpmath.pi
+            force += size * k[i] * mpmath.cos(angle)
         result.append((2 * mp(star[i]) + force) / mpmath.pi)
     return result
 
@@ -61,17 +72,15 @@ def test_the_centre_of_the_reversal():
     """c0 is between its bounds for all parameters, which the corners attain."""
     rng = rng_for("reversal centre")
     with mpmath.workdps(50):
-        for frame, _ in zip(frames(rng), range(CASES)):
+        for _ in range(CASES):
             problem, star = draw(rng)
-            problem = replace(problem, axes=frame,
+            problem = replace(problem, axes=random_frame(rng, problem.size),
                               alone="no" if problem.factor is not None else None)
             low, high = map(mp, region.reversal_centre(problem, star))
-            f00, f01, f10, f11 = problem.frame
-            seen = []
+            back, seen = mpmath.inverse(matrix(problem.frame)), []
             for corner in range(3 ** len(problem.parts)):
                 t = [corner // 3 ** m % 3 - 1 for m in range(len(problem.parts))]
-                x0, x1 = successors(problem, star, t)
-                seen.append((f11 * x0 - f01 * x1) / (2 * (f00 * f11 - f01 * f10)))
+                seen.append((back * mpmath.matrix(successors(problem, star, t)))[0] / 2)
             assert low <= min(seen) and max(seen) <= high
             assert min(seen) - low + high - max(seen) < 1e-25
 
@@ -89,21 +98,16 @@ def test_the_cosine_of_many_turns():
 
 
 def brought(problem, star, t, v):
-    """v after shifts, reversal and exchange as the proof has them, if it is in the region then."""
-    (low0, high0), (low1, high1) = problem.v0, problem.v1
-    f00, f01, f10, f11 = problem.frame
-    det = f00 * f11 - f01 * f10
-    total = successors(problem, star, t)
-    twice = [(f11 * total[0] - f01 * total[1]) / det, (f00 * total[1] - f10 * total[0]) / det]
-    for u in (v, [c - x for c, x in zip(twice, v)]):
-        x = [f00 * u[0] + f01 * u[1], f10 * u[0] + f11 * u[1]]
-        for m in range(-9, 10):
-            for n in range(-9, 10):
-                y = [x[0] + 2 * m, x[1] + 2 * n]
-                w = [(f11 * y[0] - f01 * y[1]) / det, (f00 * y[1] - f10 * y[0]) / det]
-                for z in (w[1], -w[1]) if problem.v1 == (0, 1) else (w[1],):
-                    if low0 <= w[0] <= high0 and low1 <= z <= high1:
-                        return True
+    """Is v, after shifts, reversal and exchange as the proof has them, in the region?"""
+    forth, n = matrix(problem.frame), problem.size
+    back, v = mpmath.inverse(forth), mpmath.matrix(v)
+    twice = back * mpmath.matrix(successors(problem, star, t))
+    for x in (forth * v, forth * (twice - v)):
+        for turns in product(range(-9, 10) if n == 2 else range(-4, 5), repeat=n):
+            w = list(back * (x + 2 * mpmath.matrix(turns)))
+            for u in (w, [w[0], -w[1]]) if problem.v1 == (0, 1) else (w,):
+                if all(low <= y <= high for y, (low, high) in zip(u, problem.region)):
+                    return True
     return False
 
 
@@ -121,20 +125,29 @@ def brought(problem, star, t, v):
     (Problem(SymplecticMap([(1, 0), (4, -2)], ["0.2", "0.3"])), STAR, (2, 1, -1, 2), [REVERSAL]),
     (Problem(SymplecticMap([(1, 0), (0, 1), (1, -1, "1/2")], ["0.2", "0.2", "0.3"])), STAR,
      (1, 1, -1, 1), [REVERSAL]),
+    (Problem(THREE), (*STAR, "0.6"), (1, -1, -1, 1, 1, 0, 1, 0, 1), [REVERSAL]),
+    (Problem(SymplecticMap([(1, 0, 0), (0, 3, 0), (1, 0, 1, "1/2")], ["0.2", "0.2", "0.3"])),
+     ("0.1", *STAR), (0, 1, 0, 1, 0, 0, 0, 0, 1), [REVERSAL]),
+    (Problem(SymplecticMap([(1, -2, 2), (1, 0, 0), (1, 3, 0)], ["0.5", "0.2", "0.1"])),
+     ("0.1", *STAR), (1, 2, -2, -2, 1, 0, 2, 0, 1), [REVERSAL]),
+    (Problem(SymplecticMap([(1, 2, -3), (-2, -4, 6)], ["0.2", "0.1"])), (*STAR, "0.6"), None, []),
 ])
 def test_the_region_that_is_chosen(problem, star, frame, used):
     """Any successor is in it, but for shifts and the symmetries that are said to be used."""
     rng, chosen = rng_for("chosen region"), region.reduced(problem, star)
-    assert chosen.frame == frame and region.symmetries_used(chosen, star) == used
+    assert chosen.frame == (frame or chosen.frame)
+    assert region.symmetries_used(chosen, star) == used
     assert (chosen.v1 == (0, 1)) == (EXCHANGE in used)
     assert region.symmetries_used(chosen, None) == (None if used else [])
     share = math.prod((high - low) / period for (low, high), period
-                      in zip((chosen.v0, chosen.v1), periods(frame)))
+                      in zip(chosen.region, periods(chosen.frame)))
+    assert math.prod(periods(chosen.frame)) * abs(mpmath.det(matrix(chosen.frame))) == \
+        2 ** chosen.size
     assert share * 2 ** len(used) < 1.2
     with mpmath.workdps(30):
         for _ in range(10 * TORTURE):
             t = [rng.choice([-1, 1, 0]) for _ in problem.parts]
-            assert brought(chosen, star, t, [mp(rng.uniform(-1, 1)) for _ in range(2)]) or \
+            assert brought(chosen, star, t, [mp(rng.uniform(-1, 1)) for _ in star]) or \
                 problem.factor is not None
 
 
@@ -182,13 +195,13 @@ def test_where_reversal_gains_nothing(problem, star):
 
 def test_a_place_is_found_modulo_the_lattice():
     rng = rng_for("nearest")
-    for frame, _ in zip(frames(rng), range(CASES)):
-        x, centre = ([Fraction(rng.randrange(-999, 999), 100) for _ in range(2)] for _ in range(2))
-        v0, v1 = region.nearest(frame, x, centre)
-        off = frame[0] * v0 + frame[1] * v1 - x[0], frame[2] * v0 + frame[3] * v1 - x[1]
-        assert all(y % 2 == 0 for y in off)
-        assert all(2 * abs(v - c) <= period for v, c, period
-                   in zip((v0, v1), centre, periods(frame)))
+    for n in CASES * (2, 3):
+        frame = random_frame(rng, n)
+        x, centre = ([Fraction(rng.randrange(-999, 999), 100) for _ in range(n)] for _ in range(2))
+        v = region.nearest(frame, x, centre)
+        assert all((sum(f * a for f, a in zip(frame[n * i:], v)) - y) % 2 == 0
+                   for i, y in enumerate(x))
+        assert all(2 * abs(a - c) <= period for a, c, period in zip(v, centre, periods(frame)))
 
 
 def test_the_same_theorem_from_less():
