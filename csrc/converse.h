@@ -56,6 +56,8 @@ typedef struct {
     int hint; /* learnt from the prism it was cut from; 0 for the root */
 } cv_cell;
 
+/* The cuts along one axis that a cell's index can hold. */
+enum { CV_INDEX_BITS = 61 };
 /* The sharper method tries no prism that was cut more often along one axis. */
 enum { CV_MAX_CUTS = 50 };
 
@@ -98,12 +100,6 @@ void cv_search_free(cv_search *s);
 /* Forgets tree and counts; n prisms are to be decided now, the first of them first. */
 int cv_restart(cv_search *s, int n, const cv_cell *cells);
 
-/* Takes up a tree that a search of this kind grew before: the prisms that it leaves untried, '?' or
-   missing at its end, are pending.  Its nodes do not count.  hints: of the first of these prisms,
-   as cv_look told them; the others have 0.  A lower-case letter is a leaf of which the search knows
-   nothing.  CV_EARGUMENT: it is no such tree. */
-int cv_resume(cv_search *s, const char *tree, size_t length, const int *hints, int n_hints);
-
 /* Lets threads work: the first one sets the search up, if that was not done (the bounds over the
    torus first of all), and then it and the others, if there is work enough, decide prisms.  With no
    thread the search is only set up.  They end when all prisms are decided, when an undecided one
@@ -121,10 +117,6 @@ int cv_wait(cv_search *s, double seconds);
 /* Ends the threads soon.  Prisms that are being tried are forgotten. */
 void cv_halt(cv_search *s);
 
-/* The prisms yet to be decided, the next one first: how many, and, unless cells is NULL, which.
-   What became of some of them may be known; their tries do not count yet. */
-int cv_pending(cv_search *s, cv_cell *cells);
-
 /* A search as it is, whether or not threads are at work. */
 typedef struct {
     cv_counts counts;
@@ -132,14 +124,20 @@ typedef struct {
     double points; /* of the orbits of all tries since cv_restart that count in the tree */
     int finished; /* are all prisms decided, or does an undecided one end the search? */
     int needs_long; /* see cv_search_new; the tree so far does not depend on `longest` */
-    size_t length;
-    char *tree; /* nodes in preorder, '?' for those that are pending */
-    int *steps; /* of each leaf its orbit's length, -1 if it was taken up; the hint of a '?' */
+    size_t length, n_cells;
+    char *tree; /* the nodes in preorder up to the first prism that is yet to be decided, */
+    int *steps; /* the lengths of their orbits, */
+    cv_cell *cells; /* and the prisms yet to be decided, of which some may be known: these do not
+                       count yet */
 } cv_view;
-/* from: the number of the first node to see; above that of nodes before the first '?', none.
-   CV_OK or CV_ENOMEM. */
-int cv_look(cv_search *s, size_t from, cv_view *view);
+/* whole: also the tree and the cells?  CV_OK or CV_ENOMEM. */
+int cv_look(cv_search *s, int whole, cv_view *view);
 void cv_forget_view(cv_view *view);
+
+/* May a cell be cut along this axis?  Are cells that lie on the side v1 >= v0 skipped ('S'), since
+   their mirror images will do? */
+int cv_has_axis(const cv_search *s, int axis);
+int cv_skips(const cv_search *s);
 
 /* Mather's criterion, for the method Loewner and odd V.  1: B > 10/3 on the whole patch; 2: there
    is one parameter, and B > 10/3 at its upper end t_1 = 1; 0: neither.  With 1 or 2 the theorem

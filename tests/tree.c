@@ -37,7 +37,7 @@ int main(int argc, char **argv)
     while (cv_wait(s, 1.0) == CV_RUNNING)
         continue;
     fprintf(stderr, "%d prisms at a time\n", s->method->lanes(s->work));
-    if (cv_look(s, 0, &view) != CV_OK)
+    if (cv_look(s, 1, &view) != CV_OK)
         return 1;
     fwrite(view.tree, 1, view.length, stdout);
     cv_forget_view(&view);

@@ -2,12 +2,11 @@
 
 import math
 import os
-import re
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, List, Optional, Tuple
+from typing import List, Optional, Tuple
 
 from ..model.exact import decimal_text
 from ..model.problem import Problem, rows
@@ -72,11 +71,6 @@ def check(code):
 
 TOO_LONG = lib.CV_REASON_TOO_LONG       # index of Counts.reasons
 MANY = 2 ** 30                      # No search has as many leaves.
-NO_NODE = 2 ** 31                   # The number of no node, for cv_look.
-OLD = -1                            # The orbit's length of a node that was taken up.
-
-
-UNTRIED = re.compile(r"\?")
 MAXIMA = "most_cuts", "max_steps", "max_NTsteps"    # of Counts: all other fields are sums
 
 
@@ -160,44 +154,32 @@ class Task:
     longest: int = ORDINARY
 
 
-@dataclass
-class View:
-    """A tree that may be growing.
+@dataclass(frozen=True)
+class Grown:
+    """A part of a tree: nodes, and the cells that follow them, which are yet to be decided.
 
-    text: its nodes from a certain one on, in preorder, with a `?` for each untried prism.
-    steps: the lengths of their orbits, OLD for nodes that were taken up.
-    hints: of the untried prisms, in their order.
-    counts: the statistics, in which nodes that were taken up do not count.
-    settled: the same up to the first prism on which somebody works: what depends on it does not
-    depend on the workers.
-    examined: the share of parameters and angles that lies in leaves.
+    text: the nodes in preorder.
+    steps: the lengths of their orbits, if wanted.
+    counts: their statistics.
+    cells: in preorder, each (index, cuts, hint): see cv_cell in csrc/converse.h.
+    examined: the share of parameters and angles that lies in its leaves.
     finished: is every prism decided, or one undecided in a search that is not stubborn?
     needs_long: did it end before a prism that may need a longer orbit than the task allows?
-    points: how many the orbits of all its tries have, where the core knows all of them."""
+    points: how many the orbits of all its tries have."""
 
-    text: str
-    steps: Any
-    hints: List[int]
-    counts: Counts
-    settled: Counts
-    examined: float
-    finished: bool
-    needs_long: bool
+    text: str = ""
+    steps: List[int] = field(default_factory=list)
+    counts: Counts = Counts()
+    cells: List[tuple] = field(default_factory=list)
+    examined: float = 0.0
+    finished: bool = False
+    needs_long: bool = False
     points: float = 0.0
 
-
-@dataclass
-class Grown:
-    """What cells became: the text, the lengths of its nodes' orbits, its statistics, and the cells
-    yet to be decided that follow it, each (index, cuts, hint): see cv_cell in csrc/converse.h.
-    needs_long, points: as of View."""
-
-    text: str
-    steps: List[int]
-    counts: Counts
-    cells: List[tuple]
-    needs_long: bool
-    points: float
+    def followed_by(self, other: "Grown") -> "Grown":
+        """The part that this one, whose cells were decided or none, is together with the next."""
+        return Grown(self.text + other.text, self.steps + other.steps, self.counts + other.counts,
+                     other.cells)
 
 
 def native_text(text, owners):
@@ -260,16 +242,18 @@ class Search:
     def at_once(self):
         return bool(lib.cv_at_once(self.handle))
 
-    def resume(self, text, hints):
-        """Takes up a tree; WrongTree if it does not belong to a search of this kind.
+    def has_axis(self, axis):
+        """May a cell be cut along it?"""
+        return bool(lib.cv_has_axis(self.handle, axis))
 
-        hints: of the first untried prisms, in their order."""
-        if not text.isascii():
-            raise WrongTree()
-        code = lib.cv_resume(self.handle, text.encode("ascii"), len(text), hints, len(hints))
-        if code == lib.CV_EARGUMENT:
-            raise WrongTree()
-        check(code)
+    @property
+    def skips(self):
+        """Are mirror images skipped?"""
+        return bool(lib.cv_skips(self.handle))
+
+    def restart(self, cells):
+        """Forgets the tree; these cells are to be decided now."""
+        check(lib.cv_restart(self.handle, len(cells), cells))
 
     def work(self, threads, look, leaves=MANY, points=math.inf):
         """Lets threads decide prisms, until there are as many leaves more or the orbits have as
@@ -285,50 +269,24 @@ class Search:
         finally:
             lib.cv_halt(self.handle)
 
-    def view(self, start=None):
-        """The View of the tree from node number `start` on; None: without a text."""
+    def view(self, whole=False, steps=False):
+        """What has been grown by now; without its text and cells, unless it is wanted whole."""
         view = ffi.gc(ffi.new("cv_view *"), lib.cv_forget_view)
-        check(lib.cv_look(self.handle, NO_NODE if start is None else start, view))
-        text = ffi.unpack(view.tree, view.length).decode("ascii") if start is not None and \
-            view.length else ""
-        counts = _counts(view.counts)
-        return View(text, _Steps(view), [view.steps[at.start()] for at in UNTRIED.finditer(text)],
-                    counts, counts, view.examined, bool(view.finished), bool(view.needs_long),
-                    view.points)
-
-    def cells(self):
-        """The cells yet to be decided, in preorder."""
-        cells = ffi.new("cv_cell[]", lib.cv_pending(self.handle, ffi.NULL))
-        lib.cv_pending(self.handle, cells)
-        return [(tuple(cell.index), tuple(cell.cuts), cell.hint) for cell in cells]
+        check(lib.cv_look(self.handle, whole, view))
+        nodes = view.length
+        return Grown(
+            ffi.unpack(view.tree, nodes).decode("ascii") if nodes else "",
+            ffi.unpack(view.steps, nodes) if nodes and steps else [], _counts(view.counts),
+            [(tuple(cell.index), tuple(cell.cuts), cell.hint) for cell in
+             (view.cells[n] for n in range(view.n_cells))],
+            view.examined, bool(view.finished), bool(view.needs_long), view.points)
 
     def grow(self, cells=None, leaves=MANY, points=math.inf, threads=1, look=bool):
-        """The subtrees of these cells, or of the cells that are yet to be decided, when work()
-        ends."""
+        """What becomes of these cells, or of those that are yet to be decided, when work() ends."""
         if cells is not None:
-            check(lib.cv_restart(self.handle, len(cells), cells))
+            self.restart(cells)
         self.work(threads, look, leaves, points)
-        return self.grown()
-
-    def grown(self):
-        """The subtrees of the cells."""
-        view, cells = self.view(0), self.cells()
-        size = len(view.text) - len(cells)
-        return Grown(view.text[:size], view.steps[:size], view.counts, cells, view.needs_long,
-                     view.points)
-
-
-class _Steps:
-    """The lengths of orbits in a cv_view, without a list of all."""
-
-    def __init__(self, view):
-        self.view = view
-
-    def __getitem__(self, at):
-        if isinstance(at, slice):
-            begin, end, _ = at.indices(self.view.length)
-            return ffi.unpack(self.view.steps + begin, end - begin) if end > begin else []
-        return self.view.steps[at]
+        return self.view(True, True)
 
 
 def _counts(counts):
@@ -355,4 +313,4 @@ def grow(task, leaves=MANY, points=math.inf, threads=1, look=bool):
     search = Search(task)
     if not (search.work(0, look) and search.work(threads, look, leaves, points)):
         return None
-    return search.grown()
+    return search.view(True, True)

@@ -24,7 +24,7 @@ from .orbit_length import longest
 from .proof import Proof, Tree
 from .resume import continued, counted
 from .settings import LENGTH, MAY_CHANGE, SETTINGS, Settings
-from .shared import Shared
+from .shared import OLD, Growth, Shared
 from .starts import MAX_PROOF_LEAVES, has_width, plan
 from .workers import Deadline, WorkerPool, check_options, count_workers
 
@@ -204,13 +204,14 @@ class _Run:
         problem, text = self._tree.problem, self._tree.text
         task = Task(problem, self.proof.settings, self._tree.xstar,
                     -native.ORDINARY if self.longest is None else self.longest)
-        search, began = native.Search(task), time.monotonic()
+        began, search = time.monotonic(), native.Search(task)
         if self._is_late() or not search.work(0, self._is_late):    # no time even to set it up
             return False
         counts = self.counts = self.proof.counts
         if self.proof.parts:
             counts = replace(counts, **dict(zip(tree.NODES, tree.count(text))))
-        search.resume(text, self._tree.pending)
+        growth = Growth(search, self.proof.settings, text, self._tree.pending,
+                        self.on_leaf is not None)
         if any(getattr(counts, name) != n for name, n in zip(tree.NODES, tree.count(text))):
             raise native.WrongTree()
         self.counts_before = counts
@@ -222,13 +223,13 @@ class _Run:
         if wrong:
             raise native.WrongTree("a leaf that is linked to part %s may lead out of its region"
                                    % wrong)
-        self.search = search
+        self.search = growth
         self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
         setting_up, left = time.monotonic() - began, MANY_LEAVES - counts.decided
         if self.may_be_long and left > 0 and not self._look():  # what is asked then is asked there,
             self.search.work(self.threads, self._look, left)    # whenever this looks
         if self.pool:
-            self._hand_over(task, setting_up)
+            self._hand_over(replace(task, xstar=search.xstar), setting_up)
         if not self._look():
             self.search.work(self.threads, self._look)
             self._look()
@@ -250,8 +251,8 @@ class _Run:
         if not look():
             self.search.work(self.threads, look)
         if not self._look():
-            self.search = Shared(replace(task, xstar=self.search.xstar), self.search, self.pool,
-                                 setting_up, self.on_leaf is not None)
+            self.search = Shared(task, self.search.parts(), self.pool, setting_up,
+                                 self.on_leaf is not None)
 
     def _is_late(self):
         return self._seconds_left() <= 0
@@ -369,11 +370,11 @@ class _Run:
 
     def _look(self):
         """Tells whoever wants to know how far things are.  Returns whether the work is to end."""
-        self.view = self.search.view(self.seen if self.on_leaf else None)
+        self.view = self.search.view()
         if self.on_leaf:
-            text = self.view.text.partition(tree.UNTRIED)[0]
-            self.seen += len(text)
-            self._tell(text, self.view.steps[:len(text)])
+            known, seen = self.search.parts()[0], self.seen
+            self.seen = len(known.text)
+            self._tell(known.text[seen:], known.steps[seen:])
         if self.progress:
             left = len(self.proof.trees) - self.number
             self.share = max(self.share, self.examined
@@ -385,7 +386,7 @@ class _Run:
     def _tell(self, text, steps):
         for node, points in zip(text if self.on_leaf else "", steps):
             for kind, cell in self.walk.feed(node):
-                if points != native.OLD:
+                if points != OLD:
                     leaf = tree.Leaf(kind, *self.prism(cell), sum(cell[1]))
                     self.on_leaf(leaf, points)
 
@@ -393,11 +394,14 @@ class _Run:
         """The proof as it stands."""
         proof = self.proof
         if self.search is not None:
-            view = self.search.view(0)
-            counts = dict(zip(tree.NODES, tree.count(view.text)))   # an undecided prism drops some
-            proof = replace(proof.with_tree(self.number, text=view.text.rstrip(tree.UNTRIED),
-                                            pending=tuple(view.hints)),
-                            counts=replace(self.counts_before + view.counts, **counts))
+            parts = self.search.parts()
+            text = "".join([part.text + tree.UNTRIED * len(part.cells) for part in parts])
+            nodes = dict(zip(tree.NODES, tree.count(text)))     # an undecided prism drops some
+            counts = sum((part.counts for part in parts), self.counts_before)
+            proof = replace(proof.with_tree(
+                self.number, text=text.rstrip(tree.UNTRIED),
+                pending=tuple(hint for part in parts for _, _, hint in part.cells)),
+                counts=replace(counts, **nodes))
         if proof.parts:
             proof = replace(proof, counts=counted(proof))
         return replace(proof, seconds=self.seconds_before + time.monotonic() - self.began,

@@ -1,113 +1,182 @@
-"""A tree that the workers of an executor grow.
+"""The tree of a search as parts, which threads of this process grow, or the workers of an executor.
 
 The verdict on a prism depends on the prism and on the hint from its parent, which goes with it.  So
 the tree, its statistics and the theorem are the same however the work is divided."""
 
 import re
 import time
-from dataclasses import dataclass, field
+from dataclasses import replace
 from itertools import islice
-from typing import List
+from typing import NamedTuple
 
 from . import native, tree
-from .native import Counts, View
+from .native import Counts, Grown
 
 TASK_SECONDS = 1.0                  # A task takes this time at most, and
 TASK_RATIO = 10                     # ten times as long as each worker's setting up.
 PIECE = re.compile(r"[^?]+\?*|\?+")     # nodes, and the untried prisms that follow them
+OLD = -1                            # The orbit's length of a node that was taken up.
 
 
-@dataclass(frozen=True, eq=False)
-class Part:
-    """A part of the tree: nodes, the lengths of their orbits, if wanted, and their statistics; or
-    cells, in preorder, that are to be decided.  It never changes, so that Shared.parts is whole
-    whenever an exception comes."""
+class View(NamedTuple):
+    """What is known of a tree that is grown.
 
-    text: str = ""
-    steps: List[int] = field(default_factory=list)
-    counts: Counts = Counts()
-    cells: List[tuple] = field(default_factory=list)
+    counts: the statistics, in which nodes that were taken up do not count.
+    settled: the same up to the first prism on which somebody works: what depends on it does not
+    depend on the workers.
+    examined, finished, needs_long: as of Grown."""
 
-    def followed_by(self, other):
-        return Part(self.text + other.text, self.steps + other.steps, self.counts + other.counts)
+    counts: Counts
+    settled: Counts
+    examined: float
+    finished: bool
+    needs_long: bool
+
+
+def volume(cells):
+    """The share of parameters and angles that lies in cells."""
+    return sum(0.5 ** sum(cuts) for _, cuts, _ in cells)
+
+
+def settled(parts, stubborn):
+    """Parts that follow each other, as Grown; those at the beginning of which nothing is left to do
+    are one.  What lies beyond an undecided prism that ends the search does not count."""
+    first, rest = Grown(), []
+    for part in parts:
+        end = -1 if stubborn else part.text.find("U")
+        if end >= 0:
+            part = replace(part, text=part.text[:end + 1], steps=part.steps[:end + 1], cells=[])
+        if first.cells or rest:
+            rest.append(part)
+        else:
+            first = first.followed_by(part)
+        if end >= 0:
+            break
+    return [first, *rest]
+
+
+def taken_up(search, depth, text, hints):
+    """A tree as parts.  WrongTree: no such search can have grown it.
+
+    hints: of the first untried prisms, in their order; the others have 0."""
+    parts, walk, hints = [], tree.Walk(), iter(hints)
+    most = [native.lib.CV_INDEX_BITS * search.has_axis(axis) for axis in range(len(tree.CUTS))]
+    missing = tree.untried(text) - text.count(tree.UNTRIED)
+    try:
+        for piece in PIECE.findall(text + tree.UNTRIED * missing):
+            cells = []
+            for kind, (index, cuts) in walk.feed(piece):
+                if sum(cuts) > depth or any(map(int.__gt__, cuts, most)) or kind == "S" and not (
+                        search.skips and index[1] << cuts[0] >= index[0] + 1 << cuts[1]):
+                    raise native.WrongTree()
+                if kind == tree.UNTRIED:
+                    cells.append((index, cuts, next(hints, 0)))
+            parts.append(Grown(piece.rstrip(tree.UNTRIED), cells=cells))
+    except tree.TreeError:
+        raise native.WrongTree() from None
+    return parts
+
+
+class Growth:
+    """A tree that was begun and that threads of this process grow: it takes over a search."""
+
+    def __init__(self, search, settings, text, hints, want_steps=False):
+        self.search, self.stubborn, self.want_steps = search, settings.stubborn, want_steps
+        self.begun = settled(taken_up(search, settings.depth, text, hints), self.stubborn)
+        if want_steps:
+            self.begun = [replace(part, steps=[OLD] * len(part.text)) for part in self.begun]
+        self.cells = [cell for part in self.begun for cell in part.cells]
+        search.restart(self.cells)
+
+    def work(self, *limits):
+        """As native.Search.work."""
+        return self.search.work(*limits)
+
+    def view(self):
+        """The View of the tree as it is."""
+        grown = self.search.view()
+        return View(grown.counts, grown.counts, 1.0 - volume(self.cells) + grown.examined,
+                    grown.finished or not self.cells, grown.needs_long)
+
+    def parts(self):
+        """The tree as it is: parts that follow each other, the first of which is all that is
+        settled, and the cells after it."""
+        grown, parts, at = self.search.view(True, self.want_steps), [], 0
+        cells = iter(grown.cells)
+        for part in self.begun:
+            begin, left = at, len(part.cells)       # to be decided
+            if part is self.begun[-1]:
+                at, left = len(grown.text), len(grown.cells)
+            while left and at < len(grown.text):
+                left += 1 if grown.text[at] in tree.CUTS else -1
+                at += 1
+            parts.append(part.followed_by(Grown(
+                grown.text[begin:at], grown.steps[begin:at], cells=list(islice(cells, left)))))
+        parts[0] = replace(parts[0], counts=grown.counts)
+        return settled(parts, self.stubborn)
 
 
 class Shared:
-    """The tree of a search, taken over from this process: its parts in preorder, some of them being
-    worked on.  It has the methods of native.Search that a run needs."""
+    """A tree whose parts are given to the workers of an executor.  The list of parts is replaced
+    and never changed, so that it is whole whenever an exception comes."""
 
-    def __init__(self, task, search, pool, seconds, want_steps):
+    def __init__(self, task, parts, pool, seconds, want_steps):
         """seconds: of the setting up."""
         self.task, self.pool, self.want_steps = task, pool, want_steps
         self.seconds = max(TASK_SECONDS, TASK_RATIO * seconds)
         self.needs_long = False         # may a prism need longer orbits than the task allows?
-        view, cells, self.parts = search.view(0), iter(search.cells()), []
-        for piece in PIECE.finditer(view.text):
-            text = piece[0].rstrip(tree.UNTRIED)
-            steps = view.steps[piece.start():piece.start() + len(text)] if want_steps else []
-            counts = Counts() if self.parts else view.counts
-            self.parts += [Part(text, steps, counts),
-                           Part(cells=list(islice(cells, len(piece[0]) - len(text))))]
+        self.known = parts
 
-    def _ends(self, part):
-        """Does the search end with this part, at an undecided prism?"""
-        return "U" in part.text and not self.task.settings.stubborn
+    def parts(self):
+        """As Growth.parts."""
+        self.known = settled(self.known, self.task.settings.stubborn)
+        return self.known
 
-    def view(self, start=None):
-        """As native.Search.view; steps: of the nodes before the first untried prism, if wanted."""
-        settled, *parts = self.parts
-        while parts and not parts[0].cells and not self._ends(settled):
-            settled = settled.followed_by(parts.pop(0))
-        end = next((n for n, part in enumerate((settled, *parts)) if self._ends(part)), len(parts))
-        self.parts = [settled, *parts[:end]]
-        cells = [cell for part in self.parts for cell in part.cells]
-        text, steps = "", []
-        if start is not None:
-            text = "".join(part.text + tree.UNTRIED * len(part.cells) for part in self.parts)
-            text, steps = text[start:], settled.steps[start:]
-        return View(text, steps, [hint for _, _, hint in cells],
-                    sum((part.counts for part in self.parts[1:]), settled.counts), settled.counts,
-                    1.0 - sum(0.5 ** sum(cuts) for _, cuts, _ in cells), not cells,
-                    self.needs_long)
+    def view(self):
+        """As Growth.view."""
+        parts = self.parts()
+        cells = [cell for part in parts for cell in part.cells]
+        return View(sum((part.counts for part in parts), Counts()), parts[0].counts,
+                    1.0 - volume(cells), not cells, self.needs_long)
 
     def work(self, _, look):
         """Lets the workers decide prisms, until look() returns True."""
         self.pool.work(self._next_task, self._take, look)
 
     def _next_task(self):
-        """The first part that nobody works on.  The parts that wait are divided before, until there
-        are as many as tasks are wanted, if possible: the last cell of a part is the largest, since
-        it was cut least."""
+        """The first cells on which nobody works.  The parts that wait are divided before, until
+        there are as many as tasks are wanted, if possible: the last cell of a part is the largest,
+        since it was cut least."""
         busy = {id(task.key) for task in self.pool.running.values()}
-        waiting = [part for part in self.parts if part.cells and id(part) not in busy]
+        waiting = [part for part in self.known if part.cells and id(part.cells) not in busy]
         while waiting and len(waiting) < self.pool.size - len(busy):
             part = max(waiting, key=lambda part: len(part.cells))
             if len(part.cells) == 1:
                 break
-            halves = Part(cells=part.cells[:-1]), Part(cells=part.cells[-1:])
-            self._replace(part, halves)
+            halves = replace(part, cells=part.cells[:-1]), Grown(cells=part.cells[-1:])
+            self._replace(part.cells, halves)
             at = waiting.index(part)
             waiting[at:at + 1] = halves
-        return (waiting[0], grow, self.task, waiting[0].cells, self.seconds, self.want_steps) \
-            if waiting else None
+        return (waiting[0].cells, grow, self.task, waiting[0].cells, self.seconds,
+                self.want_steps) if waiting else None
 
-    def _take(self, part, grown):
-        parts, needs_long = grown
-        if part in self.parts:          # else an undecided prism before it ended the search
-            self._replace(part, parts)
-            self.needs_long |= needs_long
+    def _take(self, cells, grown):
+        for part in self.known:
+            if part.cells is cells:     # else an undecided prism before it ended the search
+                self.needs_long |= grown.needs_long
+                self._replace(cells, [part.followed_by(grown)])
+                break
 
-    def _replace(self, part, parts):
-        at = self.parts.index(part)
-        self.parts = [*self.parts[:at], *parts, *self.parts[at + 1:]]
+    def _replace(self, cells, parts):
+        """Puts parts in the place of the one with these cells."""
+        at = [id(part.cells) for part in self.known].index(id(cells))
+        self.known = [*self.known[:at], *parts, *self.known[at + 1:]]
 
 
 def grow(task, cells, seconds, want_steps):
-    """The Parts that cells become in some seconds, and whether the first prism that is not decided
-    may need a longer orbit than the task allows.  A worker calls it."""
+    """What cells become in some seconds.  A worker calls it."""
     search = native.Search(task)
     search.work(0, bool)
     end = time.monotonic() + seconds
     grown = search.grow(cells, look=lambda: time.monotonic() >= end)
-    nodes = Part(grown.text, grown.steps if want_steps else [], grown.counts)
-    return ([nodes, Part(cells=grown.cells)] if grown.cells else [nodes]), grown.needs_long
+    return grown if want_steps else replace(grown, steps=[])

@@ -9,8 +9,6 @@
 #include "arith/guard.h"
 #include "search/method.h"
 
-enum { INDEX_BITS = 61 };               /* cuts along one axis that a cell's index can hold */
-
 /* A prism that the tree's beginning does not hold yet, or one that is free. */
 typedef struct {
     cv_cell cell;
@@ -18,7 +16,6 @@ typedef struct {
     char kind;                          /* what became of it as in the text, or '?' */
     char busy;                          /* Does a thread try it? */
     int next;                           /* the next one in preorder, or the next free one */
-    size_t old, old_end; /* nodes of the tree taken up that follow what it becomes */
 } prism;
 
 typedef struct worker worker; /* threads.c */
@@ -33,9 +30,9 @@ struct cv_search {
     patch problem;
     prism *prisms;
     int n_prisms, allocated, free_prism;
-    char *tree, *old; /* old: the text that was taken up */
-    int *steps; /* of the orbit of each node; OLD: of an old one */
-    size_t length, capacity, old_length;
+    char *tree;
+    int *steps; /* of the orbit of each node */
+    size_t length, capacity;
     cv_counts counts;
     double points, examined; /* of all orbits that were followed; share of the volume */
     double most_points;

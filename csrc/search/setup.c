@@ -26,7 +26,6 @@ void cv_search_free(cv_search *s)
     pthread_cond_destroy(&s->ended);
     free(s->prisms);
     free(s->tree);
-    free(s->old);
     free(s->steps);
     free(s);
 }
@@ -104,6 +103,7 @@ int set_up(cv_search *s)
 int cv_search_new(cv_search **result, const cv_problem *problem, const char *const xstar[ANGLES],
                   int method, int dp, int depth, int stubborn, int as_printed, int longest)
 {
+    static const cv_cell root;          /* its fields are 0 */
     cv_search *s;
     given g = { NULL, problem, xstar, CV_OK };
     int status;
@@ -129,7 +129,7 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
         status = s->numbers_lost ? CV_ENOMEM : g.status;
     }
     if (status == CV_OK)
-        status = cv_resume(s, "", 0, NULL, 0);  /* the whole root is to be tried */
+        status = cv_restart(s, 1, &root);
     if (status == CV_OK) {
         *result = s;
     } else {

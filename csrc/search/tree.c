@@ -6,24 +6,17 @@
    other prism.  So threads may try the first prisms of those that are pending in any order and
    company (threads.c).  A prism counts only when all before it are known: limits, statistics and
    the end at an undecided prism are those of a search that tries one prism after the other. */
-#include <ctype.h>
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "search/search.h"
 
-enum { MOST_PENDING = AXES * INDEX_BITS + 1 };  /* A cut adds one, and a cell has fewer cuts. */
-enum { OLD = -1 };                      /* the steps of a node of a tree that was taken up */
-
-static const cv_cell whole; /* all zeros */
-
 static int is_cut(char kind) { return kind >= '0' && kind < '0' + AXES; }
 
 static int may_halve(const cv_search *s, const cv_cell *c, int axis)
 {
-    return all_cuts(c) < s->depth && c->cuts[axis] < INDEX_BITS;
+    return all_cuts(c) < s->depth && c->cuts[axis] < CV_INDEX_BITS;
 }
 
 /* The cell becomes the upper of its halves across axis. */
@@ -120,10 +113,7 @@ void put_outcome(cv_search *s, int id, const outcome *out)
     p->kind = (char)('0' + axis);
     upper.hint = out->hint;
     split_cell(&upper, axis, &lower);
-    prism *const last = &s->prisms[put_after(s, id, &upper)];
-    last->old = p->old;
-    last->old_end = p->old_end;
-    p->old_end = p->old;
+    put_after(s, id, &upper);
     put_after(s, id, &lower);
 }
 
@@ -139,10 +129,10 @@ static int last_below(const cv_search *s, int id)
 
 /* ---- the tree's beginning */
 
-static int room_for_nodes(cv_search *s, size_t n)
+static int room_for_a_node(cv_search *s)
 {
-    if (s->length + n > s->capacity) {
-        const size_t capacity = 2 * s->capacity + n + 4096;
+    if (s->length == s->capacity) {
+        const size_t capacity = 2 * s->capacity + 4096;
         char *tree = realloc(s->tree, capacity);
         if (tree == NULL)
             return CV_ENOMEM;
@@ -165,32 +155,6 @@ static void count_node(cv_counts *counts, char kind, int cuts)
     counts->undecided += kind == 'U';
     if (kind == 'P' && cuts > counts->most_cuts)
         counts->most_cuts = cuts;
-}
-
-static void append(cv_search *s, char kind, int steps)
-{
-    s->tree[s->length] = kind;
-    s->steps[s->length++] = steps;
-}
-
-/* Does the search end at this node?  What is known beyond it does not count. */
-static int ends_at(cv_search *s, char kind)
-{
-    if (kind != 'U' || s->stubborn)
-        return 0;
-    forget_prisms(s);
-    s->status = CV_OK;
-    return 1;
-}
-
-/* Appends nodes of the tree that was taken up; there is room. */
-static void append_old(cv_search *s, size_t begin, size_t end)
-{
-    for (size_t j = begin; j < end; j++) {
-        append(s, s->old[j], OLD);
-        if (ends_at(s, s->old[j]))
-            break;
-    }
 }
 
 /* Adds a try to the statistics. */
@@ -230,14 +194,15 @@ static void append_first(cv_search *s)
     if (p.kind != 'S')
         count_try(s, &p);
     count_node(&s->counts, p.kind, cuts);
-    append(s, p.kind, p.kind == 'S' || is_cut(p.kind) ? 0 : p.outcome.v.nsteps);
+    s->tree[s->length] = p.kind;
+    s->steps[s->length++] = p.kind == 'S' || is_cut(p.kind) ? 0 : p.outcome.v.nsteps;
     if (!is_cut(p.kind))
         s->examined += ldexp(1.0, -cuts);
     s->prisms[0].next = p.next;
     s->prisms[id].next = s->free_prism;
     s->free_prism = id;
-    if (!ends_at(s, p.kind))
-        append_old(s, p.old, p.old_end);
+    if (p.kind == 'U' && !s->stubborn)
+        forget_prisms(s);               /* the end: what is known beyond it does not count */
 }
 
 static int is_enough(const cv_search *s)
@@ -256,7 +221,7 @@ void append_known(cv_search *s)
             break;
         if (first->kind == '-')
             s->status = CV_OK;          /* nothing is left */
-        else if (room_for_nodes(s, 1 + first->old_end - first->old) != CV_OK)
+        else if (room_for_a_node(s) != CV_OK)
             s->status = CV_ENOMEM;
         else
             append_first(s);
@@ -266,8 +231,7 @@ void append_known(cv_search *s)
 
 /* ---- what Python gives and gets */
 
-/* Forgets tree and counts, for n prisms that will be put into the list. */
-static int forget_tree(cv_search *s, int n)
+int cv_restart(cv_search *s, int n, const cv_cell *cells)
 {
     cv_halt(s);
     if (s->numbers_lost)
@@ -278,133 +242,17 @@ static int forget_tree(cv_search *s, int n)
     if (room_for_prisms(s, n + 1) != CV_OK)
         return CV_ENOMEM;
     forget_prisms(s);
-    s->length = s->old_length = 0;
+    s->length = 0;
     s->needs_long = 0;
     s->points = s->examined = 0.0;
     memset(&s->counts, 0, sizeof s->counts);
     s->status = CV_RUNNING;
-    return CV_OK;
-}
-
-int cv_restart(cv_search *s, int n, const cv_cell *cells)
-{
-    const int status = forget_tree(s, n);
-
-    for (int j = n - 1; status == CV_OK && j >= 0; j--)
+    for (int j = n - 1; j >= 0; j--)
         put_after(s, 0, &cells[j]);
-    return status;
-}
-
-/* The leaf of a tree that is taken up; '?': untried. */
-static int is_leaf(const cv_search *s, char node, const cv_cell *c)
-{
-    return node == 'P' || node == 'U' || node == '?' || islower((unsigned char)node) ||
-           (node == 'S' && may_skip(s, c));
-}
-
-/* Reads the tree, whose text is s->old, and lists the prisms to be tried. */
-static int take_up(cv_search *s, const int hints[], int n_hints)
-{
-    cv_cell pending[MOST_PENDING] = { whole };
-    size_t first = s->old_length;       /* the untried prism */
-    int n = 1, last = 0;
-
-    s->examined = 1.0;
-    for (size_t j = 0; j < s->old_length || n > 0; j++) {
-        const char node = j < s->old_length ? s->old[j] : '?';
-        if (n == 0)
-            return CV_EARGUMENT;
-        cv_cell *const c = &pending[n - 1];
-        if (last > 0 && node != '?')
-            s->prisms[last].old_end = j + 1;
-        if (is_cut(node) && s->method->has_axis(&s->problem, node - '0') &&
-            may_halve(s, c, node - '0')) {
-            pending[n] = *c;
-            split_cell(&pending[n - 1], node - '0', &pending[n]);
-            n++;
-            continue;
-        }
-        n--;
-        if (!is_leaf(s, node, c))
-            return CV_EARGUMENT;
-        if (node != '?')
-            continue;
-        if (last == 0 && j < first)
-            first = j;
-        c->hint = n_hints > 0 ? *hints : 0;
-        hints += n_hints > 0;
-        n_hints -= n_hints > 0;
-        last = put_after(s, last, c);
-        s->prisms[last].old = s->prisms[last].old_end = j + 1;
-        s->examined -= ldexp(1.0, -all_cuts(c));
-    }
-    append_old(s, 0, first);
     return CV_OK;
 }
 
-int cv_resume(cv_search *s, const char *tree, size_t length, const int *hints, int n_hints)
-{
-    char *const old = malloc(length + 1);
-    int n = MOST_PENDING, status = old == NULL ? CV_ENOMEM : CV_OK;
-
-    for (size_t j = 0; j < length; j++)
-        n += tree[j] == '?';
-    if (status == CV_OK)
-        status = forget_tree(s, n);
-    if (status == CV_OK)
-        status = room_for_nodes(s, length);
-    if (status != CV_OK) {
-        free(old);
-        return status;
-    }
-    free(s->old);
-    s->old = memcpy(old, tree, length);
-    s->old_length = length;
-    s->enough = LONG_MAX;
-    s->most_points = HUGE_VAL;
-    status = take_up(s, hints, n_hints);
-    if (status == CV_OK) {
-        append_known(s);
-    } else {
-        forget_prisms(s);
-        s->status = status;
-    }
-    return status;
-}
-
-int cv_pending(cv_search *s, cv_cell *cells)
-{
-    int n = 0;
-
-    pthread_mutex_lock(&s->lock);
-    for (int id = s->prisms[0].next; id > 0; id = s->prisms[last_below(s, id)].next) {
-        if (cells != NULL)
-            cells[n] = s->prisms[id].cell;
-        n++;
-    }
-    pthread_mutex_unlock(&s->lock);
-    return n;
-}
-
-/* Writes the nodes after the tree's beginning: a '?' with its hint for each prism, though it may be
-   known what became of that, and the old nodes between them. */
-static size_t write_rest(const cv_search *s, char *tree, int *steps)
-{
-    size_t n = 0;
-
-    for (int id = s->prisms[0].next, last; id > 0; id = s->prisms[last].next) {
-        last = last_below(s, id);
-        tree[n] = '?';
-        steps[n++] = s->prisms[id].cell.hint;
-        for (size_t j = s->prisms[last].old; j < s->prisms[last].old_end; j++) {
-            tree[n] = s->old[j];
-            steps[n++] = OLD;
-        }
-    }
-    return n;
-}
-
-int cv_look(cv_search *s, size_t from, cv_view *view)
+int cv_look(cv_search *s, int whole, cv_view *view)
 {
     int status = CV_OK;
 
@@ -412,21 +260,22 @@ int cv_look(cv_search *s, size_t from, cv_view *view)
     *view = (cv_view){ .counts = s->counts,
                        .examined = s->examined,
                        .points = s->points,
-                       .length = s->length,
                        .finished = s->status == CV_OK,
                        .needs_long = s->needs_long };
-    if (from <= s->length) {
-        const size_t n = s->length - from, room = n + (size_t)s->n_prisms + s->old_length;
-        view->tree = malloc(room);
-        view->steps = malloc(room * sizeof *view->steps);
-        if (view->tree == NULL || view->steps == NULL) {
+    if (whole) {
+        view->tree = malloc(s->length + 1);
+        view->steps = malloc((s->length + 1) * sizeof *view->steps);
+        view->cells = malloc((size_t)s->n_prisms * sizeof *view->cells);
+        if (view->tree == NULL || view->steps == NULL || view->cells == NULL) {
             status = CV_ENOMEM;
-        } else if (room > 0) {
-            if (n > 0) {                /* else there may be no arrays yet */
-                memcpy(view->tree, s->tree + from, n);
-                memcpy(view->steps, s->steps + from, n * sizeof *view->steps);
+        } else {
+            if (s->length > 0) {        /* else there may be no arrays yet */
+                memcpy(view->tree, s->tree, s->length);
+                memcpy(view->steps, s->steps, s->length * sizeof *view->steps);
             }
-            view->length = n + write_rest(s, view->tree + n, view->steps + n);
+            for (int id = s->prisms[0].next; id > 0; id = s->prisms[last_below(s, id)].next)
+                view->cells[view->n_cells++] = s->prisms[id].cell;
+            view->length = s->length;
         }
     }
     pthread_mutex_unlock(&s->lock);
@@ -439,10 +288,12 @@ void cv_forget_view(cv_view *view)
 {
     free(view->tree);
     free(view->steps);
-    view->tree = NULL;
-    view->steps = NULL;
+    free(view->cells);
+    *view = (cv_view){ .length = 0 };
 }
 
+int cv_has_axis(const cv_search *s, int axis) { return s->method->has_axis(&s->problem, axis); }
+int cv_skips(const cv_search *s) { return s->symmetric; }
 int cv_at_once(const cv_search *s) { return s->at_once; }
 void cv_free(char *text) { free(text); }
 

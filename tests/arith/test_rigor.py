@@ -207,7 +207,7 @@ def step():
     return grow(1)
 def look():
     view = ffi.new("cv_view *")
-    assert lib.cv_look(handle[0], 0, view) == 0
+    assert lib.cv_look(handle[0], 1, view) == 0
     text = ffi.unpack(view.tree, view.length) if view.length else b""
     lib.cv_forget_view(view)
     return text.rstrip(b"?"), view.counts

@@ -201,12 +201,7 @@ def grow(search: Any, leaves: int = native.MANY) -> str:
     while check(native.lib.cv_wait(search, 1.0)) == native.lib.CV_RUNNING:
         pass
     view = native.ffi.new("cv_view *")
-    check(native.lib.cv_look(search, 0, view))
+    check(native.lib.cv_look(search, 1, view))
     text = native.ffi.unpack(view.tree, view.length).decode("ascii") if view.length else ""
     native.lib.cv_forget_view(view)
     return text
-
-
-def symmetric(search: Any) -> bool:
-    """Does it skip mirror images?"""
-    return bool(lib.search_symmetric(ffi.cast("void *", int(native.ffi.cast("intptr_t", search)))))

@@ -75,4 +75,3 @@ char *search_half(const void *search, int axis)
     return apm_get_str(((const cv_search *)search)->problem.half[axis]);
 }
 
-int search_symmetric(const void *search) { return ((const cv_search *)search)->symmetric; }

@@ -16,6 +16,7 @@ from conftest import around
 import converse
 from converse.model.exact import pi_bounds
 from converse.model.map import LINE
+from converse.prover.settings import Settings
 from converse.prover.tree import leaves
 
 import kernels
@@ -254,7 +255,7 @@ def test_two_threads_do_not_meet(root):
 
 def test_no_symmetry_where_the_start_is_off_the_diagonal():
     """A starting point of one's own (from a backup) may lie anywhere; then nothing is skipped."""
-    from converse.prover.native import Settings, Task, grow
+    from converse.prover.native import Task, grow
 
     for xstar, skips in ((("0.82", "0.82"), True), (("0.82", "0.83"), False)):
         counts = grow(Task(line("0.0275"), Settings("thesis", digits=20), xstar)).counts
@@ -263,41 +264,47 @@ def test_no_symmetry_where_the_start_is_off_the_diagonal():
 
 # ---- what may be asked of a search in C, in which order
 
+SETTINGS = Settings("thesis", depth=30)
+
+
 def core_search(xstar=None, depth=30, **settings):
-    from converse.prover.native import Search, Settings, Task
+    from converse.prover.native import Search, Task
 
     search = Search(Task(line("0.0275"), Settings("thesis", depth=depth, **settings), xstar))
     assert search.work(0, bool)
     return search
 
 
-def test_a_tree_that_is_taken_up(root):
-    """A whole tree leaves nothing to do, a wrong one nothing that can be stepped."""
-    from converse.prover.native import WrongTree, ffi, lib
+def test_a_tree_that_is_taken_up():
+    """A whole tree leaves nothing to do, and a wrong one is refused."""
+    from converse.prover.native import WrongTree
+    from converse.prover.shared import Growth
 
     search = core_search()
-    handle = search.handle
     for text, pending in (("P", 0), ("0PU", 0), ("0aP", 0), ("0SP", -1), ("0P", 1), ("0??", 2),
-                          ("PP", -1), ("2PP", -1), ("X", -1), ("0P\0", -1)):
-        found = lib.cv_resume(handle, text.encode(), len(text), ffi.NULL, 0)
-        assert found == (lib.CV_EARGUMENT if pending < 0 else lib.CV_OK)
-        assert lib.cv_pending(handle, ffi.NULL) == max(0, pending)
+                          ("PP", -1), ("2PP", -1), ("X", -1), ("0P\0", -1), ("0P\u00e9", -1),
+                          ("0P?\U0001d7d8", -1), ("0" * 30 + "P", 30), ("0" * 31 + "P", -1)):
         if pending < 0:
-            assert lib.cv_start(handle, 1, 100, math.inf) == lib.CV_EARGUMENT
+            with pytest.raises(WrongTree):
+                Growth(search, SETTINGS, text, [])
         else:
-            search.work(1, bool, 100)
-    for text in "0P\u00e9", "0P?\U0001d7d8":
-        with pytest.raises(WrongTree):
-            search.resume(text, [])
+            growth = Growth(search, SETTINGS, text, [])
+            assert sum(len(part.cells) for part in growth.parts()) == pending
+            assert growth.view().finished == (pending == 0)
+            assert growth.work(1, bool, 100 if pending < 30 else 1)
 
 
 @pytest.mark.parametrize("xstar, good", [(("0.82", "0.82"), True), (("0.82", "0.83"), False)])
 def test_what_was_skipped_must_be_symmetric(xstar, good):
     from converse.prover.native import WrongTree
+    from converse.prover.shared import Growth
 
     search = core_search(xstar)
     with contextlib.nullcontext() if good else pytest.raises(WrongTree):
-        search.resume("01?S?", [])
+        Growth(search, SETTINGS, "01?S?", [])
+    for text in "01?SS", "0S?", "1S?":
+        with pytest.raises(WrongTree):
+            Growth(search, SETTINGS, text, [])
 
 
 def test_the_finest_index():
@@ -323,7 +330,7 @@ def test_stopped_in_the_middle_of_a_prism(threads):
             check(lib.cv_start(search.handle, threads, 12 - sum(map(seen.count, "PSU")), math.inf))
             lib.cv_wait(search.handle, delay)
             lib.cv_halt(search.handle)
-            text = search.view(0).text.rstrip("?")
+            text = search.view(True).text
             assert text.startswith(seen)
             stops += text == seen
             seen, delay = text, 1.1 * delay
@@ -334,7 +341,7 @@ def test_stopped_in_the_middle_of_a_prism(threads):
 
 
 def test_a_search_whose_setting_up_was_stopped_is_good_for_nothing():
-    from converse.prover.native import Search, Settings, Task, ffi, lib
+    from converse.prover.native import Search, Task, ffi, lib
 
     search = Search(Task(line("0.0275"), Settings("thesis", digits=100000)))
     assert not search.work(0, lambda: True)

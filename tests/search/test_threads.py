@@ -12,6 +12,7 @@ from conftest import around
 from converse.model.map import LINE
 from converse.prover.native import Search, Task, WrongTree, chosen_start, grow
 from converse.prover.settings import Settings
+from converse.prover.shared import OLD, Growth
 
 from truth import TORTURE
 
@@ -64,7 +65,7 @@ def test_threads_wait_until_the_search_is_set_up(task):
     for _ in range(5):
         search = Search(task)
         assert search.work(5, bool, leaves=50)
-        assert search.view(0).text.rstrip("?") == one.text and search.view().counts == one.counts
+        assert search.view(True).text == one.text and search.view().counts == one.counts
 
 
 def test_what_is_left_goes_on_in_another_search():
@@ -75,10 +76,15 @@ def test_what_is_left_goes_on_in_another_search():
     assert one.counts + rest.counts == whole.counts
     search = Search(LOEWNER)
     search.work(0, bool)
-    search.resume(one.text, [hint for _, _, hint in one.cells])
-    again = search.grow(threads=2)
-    assert again.text == whole.text and again.steps[len(one.text):] == rest.steps
-    assert again.counts == rest.counts
+    growth = Growth(search, LOEWNER.settings, one.text, [hint for _, _, hint in one.cells], True)
+    growth.work(2, bool)
+    again, = growth.parts()
+    assert again.text == whole.text and again.steps == [OLD] * len(one.text) + rest.steps
+    assert again.counts == growth.view().counts == rest.counts
+
+
+def text_of(growth):
+    return "".join(part.text + "?" * len(part.cells) for part in growth.parts())
 
 
 def gaps(text, rng):
@@ -94,18 +100,21 @@ def test_gaps_are_filled(task):
     search.work(0, bool)
     for _ in range(10 * TORTURE):
         text = gaps(whole.text, rng)
-        search.resume(text, [])
-        view = search.view(0)
-        assert view.text.rstrip("?") == text.rstrip("?")
-        search.work(3, bool, leaves=rng.randrange(1, 40))
-        search.work(2, bool)
-        view = search.view(0)
-        assert view.finished and (view.examined == 1.0 or view.text.endswith("U"))
+        growth = Growth(search, task.settings, text, [])
+        assert text_of(growth).rstrip("?") == text.rstrip("?")
+        growth.work(3, bool, rng.randrange(1, 40))
+        if rng.random() < 0.5:
+            text = text_of(growth)
+            growth = Growth(search, task.settings, text, [])
+        growth.work(2, bool)
+        (part, *others), view = growth.parts(), growth.view()
+        assert not others and not part.cells
+        assert view.finished and (view.examined == 1.0 or part.text.endswith("U"))
         if task.settings.method == "thesis":    # its tries do not depend on hints
-            assert view.text == whole.text
+            assert part.text == whole.text
         if "U" not in whole.text:
             for name, kinds in ("proved", "P"), ("cuts", "01234"):
-                assert getattr(view.counts, name) == sum(map(view.text.count, kinds)) - sum(
+                assert getattr(view.counts, name) == sum(map(part.text.count, kinds)) - sum(
                     map(text.count, kinds))
 
 
@@ -119,21 +128,19 @@ def test_what_lies_beyond_an_undecided_prism_of_an_earlier_run_does_not_count():
     first = text.index("P")
     search = Search(task)
     search.work(0, bool)
-    search.resume(text[:first] + "?" + text[first + 1:], [])
-    search.work(2, bool)
-    view = search.view(0)
-    assert view.text == whole.text and view.finished
-    assert (view.counts.proved, view.counts.cuts) == (1, 0)
+    growth = Growth(search, task.settings, text[:first] + "?" + text[first + 1:], [])
+    growth.work(2, bool)
+    assert text_of(growth) == whole.text and growth.view().finished
+    assert (growth.view().counts.proved, growth.view().counts.cuts) == (1, 0)
 
 
 def test_linked_leaves_are_kept():
     search = Search(LOEWNER)
     search.work(0, bool)
-    search.resume("02a?b", [5])
-    view = search.view(0)
-    assert (view.text, view.hints) == ("02a?b", [5])
+    growth = Growth(search, LOEWNER.settings, "02a?b", [5])
+    assert text_of(growth) == "02a?b" and growth.parts()[0].cells[0][2] == 5
     with pytest.raises(WrongTree):
-        search.resume("02a?A", [])
+        Growth(search, LOEWNER.settings, "02a?A", [])
 
 
 def test_the_prisms_tried_ahead_are_tried_once():
@@ -142,7 +149,7 @@ def test_the_prisms_tried_ahead_are_tried_once():
     search.work(0, bool)
     while not search.view().finished:
         search.work(2, bool, leaves=10)
-    assert search.view(0).text == grow(task).text
+    assert search.view(True).text == grow(task).text
     assert search.view().counts == grow(task).counts
 
 
