@@ -80,6 +80,8 @@ def parser():
                    help=TOGETHER + " (loewner)")
     p.add_argument("--xstar", nargs=2, type=_decimal, metavar=("X0", "X1"),
                    help="the starting point x*, angles in radians (default: the program chooses)")
+    p.add_argument("--x2", type=_decimal, metavar="X2",
+                   help="with --xstar, its third angle, of a map of three angles")
     add_worker_options(p, "parts")
     p.add_argument("--list-inputs", action=ListInputs, nargs=0,
                    help="print the paths of the input files that come with the program, and exit")
@@ -88,9 +90,10 @@ def parser():
 
 def _leaf_line(leaf, points):
     """A line of -t: kind, centre and half-widths in radians, cuts, steps."""
-    numbers = ["%.10g" % (x * math.pi) for x in leaf.centre + leaf.half]
-    return "%-9s (%s, %s) +- (%s, %s), %d cuts, %d steps" % (
-        LEAF_WORDS.get(leaf.kind, "linked"), *numbers, leaf.depth, points)
+    centre, half = (", ".join("%.10g" % (x * math.pi) for x in each)
+                    for each in (leaf.centre, leaf.half))
+    return "%-9s (%s) +- (%s), %d cuts, %d steps" % (
+        LEAF_WORDS.get(leaf.kind, "linked"), centre, half, leaf.depth, points)
 
 
 class Progress:
@@ -129,6 +132,10 @@ def run(options):
     from ..prover.report import verdict
     from ..prover.run import prove  # it needs the C core, and says so where it is missing
 
+    if options.x2 is not None:
+        if options.xstar is None:
+            raise ConverseError("--x2 is the third angle of x*; give the others by --xstar X0 X1")
+        options.xstar.append(options.x2)
     if options.graphics == "off":
         options.graphics = None
     with contextlib.suppress(AttributeError, OSError, ValueError):

@@ -51,6 +51,8 @@ def foot(proof):
     if any(map(proof.tree.count, tree.CUTS[2:])) and not proof.all_decided:
         lines.append("where prisms of several parameters share a place, "
                      "what is not proved lies on top")
+    if proof.problem.size > 2:
+        lines.append("prisms are seen along v2, and what is not proved lies on top")
     if proof.problem.frame != identity(proof.problem.size):
         lines.append("the angles after x* are " + frame_text(proof.problem.frame, "v%d"))
     if proof.symmetries_used:
@@ -86,4 +88,4 @@ def star(proof):
         if side == 0 or abs(v - middle) > side:
             return None
         places.append(float(((v - middle) / side + 1) / 2))
-    return tuple(places)
+    return tuple(places[:2])

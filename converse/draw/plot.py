@@ -171,7 +171,7 @@ def page(proof, caption=True, ax=None):
                     fontsize=8, frameon=False)          # below the labels of the axes
     for image in axes.images[:1]:
         fig.colorbar(image, ax=axes, shrink=0.6, ticks=MaxNLocator(integer=True),
-                     label="proved (%d): cuts of the smallest prism along both angles"
+                     label="proved (%d): cuts of the smallest prism along v0 and v1"
                      % captions.counts(proof).get("P", 0))
     return fig
 
@@ -206,7 +206,8 @@ def draw(proof, axes):
 def _axis(problem, axes, k):
     """Prepares an axis for the angle k; returns its beginning and its length.  A single value
     is drawn as a strip; in a narrow range, which doubles may not resolve, the centre is at 0."""
-    centre, half = problem.centre[k - 2], problem.half[k - 2]
+    low, high = problem.region[k]
+    centre, half = (low + high) / 2, (high - low) / 2
     single = half < SINGLE
     strip = Fraction(1, 2) if single else half
     origin = centre if strip < abs(centre) / 10 ** 4 else 0

@@ -84,7 +84,8 @@ def _undecided(proof, file):
     problem, undecided = proof.problem, proof.undecided
     torus = ("a " if problem.map.dimension == 1 else "an ") + TORUS[problem.map.dimension]
     flat = not problem.present
-    lines = ["UNDECIDED: nothing is proved.  There may be %s (see converse-tori)." % torus,
+    lines = ["UNDECIDED: nothing is proved.  There may be %s%s." % (
+                 torus, " (see converse-tori)" * (problem.size == 2)),
              *map_lines(problem), *ended(indented(["was examined " + " ".join(
                  conditions(problem))])), ""]
     if undecided:
