@@ -24,7 +24,8 @@ COMMAND = str(Path(sys.executable).parent / "converse")
 
 # What takes long takes long: a machine that is slow, or busy, is no failure.  And the same cases
 # at every run, so that none fails, or takes longer, by chance; `make torture` draws others.
-settings.register_profile("timeless", deadline=None, derandomize=TORTURE == 1,
+settings.register_profile("timeless", deadline=None, derandomize=TORTURE <= 1,
+                          max_examples=min(100, 100 * TORTURE),
                           suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("timeless")
 
@@ -45,8 +46,8 @@ SLOW = ("check/test_check", "check/test_fuzz", "commands/test_orbits_cli", "form
         "project/test_numbers", "project/test_sides", "project/test_types",
         "project/test_where_methods_fail", "prover/test_parallel", "storage/")
 
-# Of the cases of one test `make check` takes 4 at most, the first, the last and two between.
-QUICK_CASES = 4
+# Of the cases of one test `make check` takes 3 at most, the first, the last and one between.
+QUICK_CASES = 3
 
 
 def pytest_collection_modifyitems(items):

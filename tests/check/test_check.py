@@ -1082,7 +1082,6 @@ def test_forged_segments(texts, run, tree, centre, half):
     assert ("not excluded: " if upper else "not excluded at once") in err
 
 
-@pytest.mark.quick
 def test_nearly_everything_is_not_everything(deep, run):
     """Among boxes that are excluded, hide one whose parameters are not."""
     text = with_parameters(deep, *[("0.13", "0.071")] * 2, ("0.26", "0.142"))
@@ -1111,7 +1110,7 @@ def test_sincos(bits, generator):
     unit = mp.mpf(2) ** -bits
     assert abs(fixed.pi - mp.pi / unit) < 2
     worst = 0
-    for n in range(5000):
+    for n in range(5000 * TORTURE):
         x = generator.randint(-1 << bits + n % 40, 1 << bits + n % 40)
         if n % 4 == 0:                      # next to the ends of the steps of the table
             x = generator.randint(-2400, 2400) * (fixed.step >> check.GUARD + 1) + x % 7 - 3
@@ -1424,7 +1423,7 @@ def test_one_bound_in_two_arithmetics(np, texts, generator, monkeypatch):
     monkeypatch.setattr(check, "MAX_SITES", 60)
     monkeypatch.setattr(check, "FIRST_TRY_SITES", 60)
     cases = 0
-    for _ in range(12 * TORTURE):
+    for _ in range(12 * max(TORTURE, 1)):
         criterion, cell, prism = random_prism(generator, texts, 9)
         fast, l = check.Lockstep([criterion.claim]), criterion.least_pivot(cell)
         with np.errstate(all="ignore"):
@@ -1838,7 +1837,7 @@ WORST = (worst_bending, worst_remainder, worst_bending)
 @pytest.mark.quick
 def test_lockstep_terms(np, generator, worst):
     """What is left of a wave is bounded, hardly too far."""
-    assert 0.99 < worst(check, generator, 3000) <= 1
+    assert 0.99 < worst(check, generator, 3000 * TORTURE) <= 1
 
 
 def left_side(waves, amplitudes, lanes, n, tails, l, lane, size, m=mp):
@@ -2110,7 +2109,7 @@ def test_lockstep_polynomial(np, generator):
             fourth = (lefts[1] > 1e-9) & (lefts[0] > 0)
             assert (lefts[0] > 12 * lefts[1])[fourth].all()
             falls += fourth.sum()
-    assert cases > 100 and falls > 20
+    assert cases > 100 * TORTURE and falls > 20 * TORTURE
 
 
 @pytest.mark.quick
@@ -2447,7 +2446,7 @@ def test_processes_share_the_memory_of_two(np, root, tmp_path, monkeypatch):
     assert seen == [(1, check.MEMORY_MAX), (2, check.MEMORY_MAX), (3, 2 * check.MEMORY_MAX // 3)]
 
 
-@pytest.mark.skipif(TORTURE == 1, reason="minutes; make torture has it")
+@pytest.mark.skipif(TORTURE <= 1, reason="minutes; make torture has it")
 def test_the_standard_map_nearest_to_break_up(np, root, tmp_path):
     """Orbits of 18,605 points: whole, and in doubles alone, where the integers would take days."""
     proof = prove(read_input(root / "inputs" / "standard-9717.in"), method="loewner")
@@ -2469,7 +2468,7 @@ def eigenvalue(amplitudes, y, waves=TRIG):
 @pytest.mark.quick
 def test_bound_over_a_cell(generator):
     fixed, one = FIXED[96], FIXED[96].one
-    for n in range(2000):
+    for n in range(2000 * TORTURE):
         waves = some_waves(generator)
         amplitudes = [int(near(generator) * 2 ** generator.randint(-6, 3) * one) for _ in waves]
         sides = generator.choice(([(1, 0), (0, 1)], [(1, 0)], [(0, 1)], [(2, -1)]))
@@ -2592,7 +2591,7 @@ def test_least_pivot_to_the_last_unit(texts, generator, monkeypatch):
             [k[:2] for k in waves], corner))}[k] for k in check.THESIS]) - 2 for corner in corners)
 
     monkeypatch.setattr(check, "torus_bound", in_units_of)
-    for n in range(300):
+    for n in range(300 * TORTURE):
         text = with_tree(texts["trig274"], "2PP" if n % 3 else "P", False)
         claim = claim_of(random_claim(generator, text, 2, 1, False))
         criterion = check.Criterion(claim)

@@ -34,17 +34,17 @@ def input_file(tmp_path):
 def made(tmp_path_factory):
     """A diagram with two parameters, and its file."""
     path = tmp_path_factory.mktemp("map") / "plane.map"
-    return diagram.explore(STRONG, path=path, budget="0.2", jobs=1), path
+    return diagram.explore(STRONG, path=path, budget="0.1", jobs=1), path
 
 
 # ---- the search
 
 def test_what_is_proved_does_not_depend_on_the_number_of_tasks(made, tmp_path):
     found, path = made
-    other = diagram.explore(STRONG, path=tmp_path / "other", budget="0.2", jobs=3)
+    other = diagram.explore(STRONG, path=tmp_path / "other", budget="0.1", jobs=3)
     assert found.members and [m.text for m in other.members] == [m.text for m in found.members]
     assert other.search == found.search and other.points == found.points
-    assert found.points >= 0.2 * run.POINTS_A_SECOND
+    assert found.points >= 0.1 * run.POINTS_A_SECOND
 
 
 def test_proofs_and_open_cells_are_all_of_the_range(made):
@@ -67,8 +67,8 @@ def test_the_checker_confirms_it(made):
 
 def test_one_run_or_several(made, tmp_path):
     path, told = tmp_path / "map", []
-    diagram.explore(STRONG, path=path, budget="0.05", jobs=1, tell=told.append)
-    again = diagram.explore(path=path, resume=True, budget="0.2", jobs=2, tell=told.append)
+    diagram.explore(STRONG, path=path, budget="0.03", jobs=1, tell=told.append)
+    again = diagram.explore(path=path, resume=True, budget="0.1", jobs=2, tell=told.append)
     assert [m.text for m in again.members] == [m.text for m in made[0].members]
     assert told == [again.sentence(member) for member in again.members]
     assert again.points == made[0].points
@@ -84,7 +84,7 @@ def test_an_interruption_loses_nothing(made, tmp_path):
         diagram.explore(STRONG, path=path, jobs=1, tell=tell)
     before = Diagram.load(path)
     assert len(before.members) == 1
-    again = diagram.explore(path=path, resume=True, budget="0.2")
+    again = diagram.explore(path=path, resume=True, budget="0.1")
     assert again.none == made[0].none
 
 
@@ -144,7 +144,7 @@ def test_the_command(input_file, tmp_path, capsys):
 def test_nothing_proved(input_file, capsys):
     assert cli.main([input_file({"k": ["0.1", "0.2"]}), "--budget", "0.01"]) == 3
     assert "every k >= 2.0001" in capsys.readouterr().out       # by one point
-    assert cli.main([input_file({"k": ["0.1", "0.2"], "b": ["0", "0.1"]}), "--budget", "1s"]) == 1
+    assert cli.main([input_file({"k": ["0.1", "0.2"], "b": ["0", "0.1"]}), "--budget", "0.2s"]) == 1
     assert capsys.readouterr().out.startswith("UNDECIDED: nothing is proved.\n")
 
 

@@ -81,7 +81,7 @@ def test_a_contradiction_is_an_error(made):
 
 def test_what_is_no_proof_of_the_family():
     found = Diagram.of(StandardMap((0, 2)))
-    for proof in (prove(StandardMap("0.5")), prove(FroeschleMap("2", "0.1")),
+    for proof in (prove(StandardMap("0.5"), depth=3), prove(FroeschleMap("2", "0.1")),
                   tori.prove(FourierMap({2: "0.1"}), "golden")):
         with pytest.raises(ValueError, match="not a proof of the family"):
             found.add(proof)
@@ -142,21 +142,20 @@ def test_what_no_box_holds_is_uncovered():
 
 
 def test_two_parameters(tmp_path):
-    found = Diagram.of(FroeschleMap((0, 2), (0, 1)))
-    proof = prove(found.over(((F("1.5"), F(2)), (F(0), F(1)))))
-    found.add(proof)
-    assert found.none == [((F("1.5"), F(0)), (F(2), F(1)))]
-    assert found.open == [((0, 0), (F("1.5"), 1))]
+    found = Diagram.of(FroeschleMap((0, 4), (0, 1)))
+    found.add(prove(found.over(((F(3), F(4)), (F(0), F(1))))))
+    assert found.none == [((F(3), F(0)), (F(4), F(1)))]
+    assert found.open == [((0, 0), (F(3), 1))]
     found.save(tmp_path / "plane")
     again = Diagram.load(tmp_path / "plane")
     assert again.none == found.none and again.family == found.family and again.verify()
-    assert "every k in [1.5, 2], every b in [0, 1]" in found.report()
+    assert "every k in [3, 4], every b in [0, 1]" in found.report()
     assert "Open       75.0 % of the rectangle" in found.report()
 
 
 def test_the_share_that_is_open_is_rounded_up():
-    found = Diagram.of(FroeschleMap((0, 3), (0, 1)))
-    found.add(prove(found.over(((F("1.5"), F(2)), (F(0), F(1))))))
+    found = Diagram.of(FroeschleMap((1, 4), (0, 1)))
+    found.add(prove(found.over(((F("3.5"), F(4)), (F(0), F(1))))))
     assert "Open       83.4 % of the rectangle" in found.report()
 
 

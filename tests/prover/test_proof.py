@@ -661,10 +661,10 @@ def test_a_range_with_circles_is_given_up_within_seconds(monkeypatch, tmp_path):
 
 @pytest.mark.parametrize("seconds", [0.001, 0.5])
 def test_where_a_search_is_given_up_does_not_depend_on_when_it_is_looked_at(monkeypatch, seconds):
-    monkeypatch.setattr(run, "MANY_LEAVES", 300)
+    monkeypatch.setattr(run, "MANY_LEAVES", 100)
     monkeypatch.setattr(native, "LOOK_SECONDS", seconds)
     proof = prove(StandardMap(k=("0.5", "1")), jobs=2)
-    assert proof.hopeless and proof.counts.proved == 300
+    assert proof.hopeless and proof.counts.proved == 100
     assert proof.tree == prove(resume=proof, jobs=1).tree
 
 

@@ -329,7 +329,8 @@ def test_wrong_shifts_are_not_resumed(moved, tmp_path):
         prove(resume=path)
 
 
-@pytest.mark.parametrize("moment", [1, 2, 3])
+@pytest.mark.parametrize("moment", [
+    pytest.param(1, marks=pytest.mark.slow), 2, pytest.param(3, marks=pytest.mark.slow)])
 def test_interrupted(begun, moved, tmp_path, monkeypatch, moment):
     """A backup is read and continued to the same proof."""
     path, calls = tmp_path / "backup", []

@@ -58,11 +58,11 @@ def test_a_limit_ends_every_search_at_the_same_prism(task):
 
 
 @pytest.mark.parametrize("task", [LOEWNER, replace(
-    THESIS, settings=Settings("thesis", digits=3000))])
+    THESIS, settings=Settings("thesis", digits=2000))])
 def test_threads_wait_until_the_search_is_set_up(task):
     """Though they are asked for before, and the setting up takes long."""
     one = grow(task, leaves=50)
-    for _ in range(5):
+    for _ in range(2):
         search = Search(task)
         assert search.work(5, bool, leaves=50)
         assert search.view(True).text == one.text and search.view().counts == one.counts

@@ -95,7 +95,7 @@ def test_as_printed_misses_the_maximum_below_zero():
 @pytest.mark.parametrize("dp", [1, 2, 3, 10, 100])
 def test_other_precisions(dp):
     rng = rng_for("dp%d" % dp)
-    for low, high in boxes(rng, 300):
+    for low, high in boxes(rng, 300 * TORTURE):
         bounds = kernels.call("bound_sincos", [low, high], 4, dp)
         for function, lo, hi in ((mpmath.sin, *bounds[:2]), (mpmath.cos, *bounds[2:])):
             with mpmath.workdps(200):

@@ -19,8 +19,8 @@ from converse.tori.rotation import read_rotation
 @pytest.fixture(scope="module", params=["surface", "range"])
 def proof(request):
     if request.param == "range":
-        problem = Problem(SymplecticMap([(1, 0), (2, 0, Q(1, 3))], ["0.35", "-0.01"],
-                                        [["0.3", "0"]]))
+        problem = Problem(SymplecticMap([(1, 0), (2, 0, Q(1, 3))], ["0.15", "-0.01"],
+                                        [["0.1", "0"]]))
         return prove(find(problem, read_rotation("golden", 1)))
     return prove(find(Problem(SymplecticMap(THESIS, ["0.01", "0.01", "0.02"])),
                       read_rotation("T49", 2)))

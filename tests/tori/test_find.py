@@ -491,7 +491,7 @@ def test_the_degree_follows_from_the_powers_above_the_noise(heights, least, degr
 
 @pytest.mark.parametrize("name, frame, alpha", [
     ("golden", ((1,),), (1,)), ("T49", ((1, 1), (1, -1)), (1, 4)),
-    ("V1", ((1, 1), (1, -1)), (1, 6))])
+    pytest.param("V1", ((1, 1), (1, -1)), (1, 6), marks=pytest.mark.slow)])
 def test_the_loss_of_narrow_strips_is_about_what_the_checker_finds(name, frame, alpha):
     """Where the k that count most are beyond those whose divisors are computed, too."""
     rotation = read_rotation(name)

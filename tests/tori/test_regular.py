@@ -50,6 +50,7 @@ def test_resonant_vectors_are_refused(vector, resonant):
     assert _resonant(np.array([vector]), 45, 3e-8) == [resonant]
 
 
+@pytest.mark.slow
 def test_the_golden_circle_is_the_last_of_the_standard_map():
     best = regular(Orbits(StandardMap("0.9714").potential()))[0]
     assert min(best.rotation[0], 1 - best.rotation[0]) == pytest.approx((3 - 5 ** 0.5) / 2)

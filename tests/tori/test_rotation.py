@@ -137,7 +137,6 @@ def test_a_root_must_be_isolated(root):
 
 
 @given(st.lists(st.integers(-9, 9), min_size=3, max_size=4).filter(lambda p: p[-1]))
-@settings(max_examples=100, deadline=None)
 def test_irreducible_polynomials_have_no_rational_root(polynomial):
     rational = any(not evaluate(polynomial, Fraction(p, q))
                    for p in range(-9, 10) for q in range(1, 10))
@@ -147,7 +146,6 @@ def test_irreducible_polynomials_have_no_rational_root(polynomial):
 @given(st.lists(st.integers(-50, 50), min_size=3, max_size=4).filter(
     lambda p: p[-1] and is_irreducible(tuple(p))), st.lists(st.fractions(max_denominator=99),
                                                           min_size=2, max_size=2))
-@settings(max_examples=100, deadline=None)
 def test_bounds_hold_the_value_and_the_field_is_a_field(polynomial, numbers):
     polynomial = tuple(polynomial)
     for root in real_roots(polynomial):

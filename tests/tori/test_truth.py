@@ -1,7 +1,6 @@
 """Theorems about tori against what they are about: the map itself, with many digits, and the other
 half of the program."""
 
-import os
 import random
 from fractions import Fraction as F
 
@@ -15,7 +14,8 @@ from converse.prover.run import prove as prove_no_tori
 from converse.prover.settings import THEOREM
 from converse.tori import NotFound, NotProved, find, prove, read_rotation
 
-MORE = int(os.environ.get("CONVERSE_TORTURE", "1"))
+from truth import TORTURE
+
 DIGITS = 50
 
 CASES = {
@@ -105,7 +105,8 @@ def test_orbits_stay_as_near_as_the_proved_distance_allows(proved):
             assert max(abs(a - b) for a, b in zip(y, there)) <= 2 * allowed
 
 
-@pytest.mark.parametrize("name", ["golden", "phase", "line"])
+@pytest.mark.parametrize("name", [
+    "golden", "phase", pytest.param("line", marks=pytest.mark.slow)])
 def test_the_true_torus_is_where_it_was_proved_to_be(name):
     """A much more accurate torus is no further away than both distances allow.  Both have mean 0,
     and the true torus need not: a shift of theta by a distance moves x by as much times l0."""
@@ -145,7 +146,7 @@ def has_none(problem):
 def test_never_both(problem, rotations, low, high):
     """No amplitude has a torus and has none; some have one, and some have none."""
     rng, seen = random.Random(2), set()
-    amplitudes = [F(low), F(high)] + [F(rng.uniform(low, high)) for _ in range(2 * MORE)]
+    amplitudes = [F(low), F(high)] + [F(rng.uniform(low, high)) for _ in range(2 * TORTURE)]
     for amplitude in amplitudes:
         case = problem(round(amplitude, 6))
         answers = any(has_torus(case, read_rotation(name, 2 if name in ("T49", "spiral") else 1))
