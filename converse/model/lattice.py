@@ -36,3 +36,15 @@ def echelon(rows: Sequence[Sequence], columns: int) -> Tuple[List[Optional[Row]]
             here = [least, *(row for row in reduced if row[i])]
         pivots.append(here[0] if here else None)
     return pivots, rest
+
+
+def basis_along(q: Sequence[int]) -> List[Row]:
+    """Vectors that generate all vectors of integers, for a q without a common factor: q.c is 1 for
+    the last of them, and 0 for the others."""
+    n = len(q)
+    (last,), rest = echelon([(q[i], *(int(i == j) for j in range(n)))
+                             for i in reversed(range(n))], 1)
+    assert last is not None
+    others = [row[1:] for row in rest]
+    return [c if c > (0,) * n else tuple(-x for x in c) for c in others] + [
+        tuple(last[0] * x for x in last[1:])]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Sequence,
 
 from ..storage.files import ConverseError, plain
 from .exact import Ends, Number, decimal_text, integer, is_decimal, is_integer, outward, range_text
-from .lattice import echelon
+from .lattice import basis_along, echelon
 from .map import HIGHEST, PLACES, THESIS, Numbers, Range, SymplecticMap, ends_of, exact_of
 from .potential import Term, Wave, sum_text
 
@@ -268,12 +268,7 @@ class Problem:
         if not directions <= {q, tuple(-x for x in q)} or sum(map(bool, q)) < 2 or \
                 not self.full_torus:
             return identity(self.size)
-        (last,), others = echelon([(x, *row) for x, row in reversed(list(
-            zip(q, rows(identity(self.size)))))], 1)
-        columns = [row[1:] for row in others] + [tuple(x * last[0] for x in last[1:])]
-        columns = [c if c > (0,) * len(q) or c is columns[-1] else tuple(-x for x in c)
-                   for c in columns]    # the last one with q.c = 1
-        return tuple(x for row in zip(*columns) for x in row)
+        return tuple(x for row in zip(*basis_along(q)) for x in row)
 
     @cached_property
     def factor(self) -> Optional[int]:
