@@ -42,8 +42,7 @@ struct cv_search {
     enum { READ, PREPARED, SPOILT } stage; /* SPOILT: the setting up was broken off */
     int numbers_lost; /* memory ran out inside GMP: guard.c */
     worker *workers;
-    int wanted, active, idle; /* threads that there are to be, that run, that wait */
-    double began; /* when the first of them did */
+    int trying, active, idle; /* Are prisms to be tried?  Threads that run; that wait for prisms */
     stop_request stop; /* the threads are to end */
     pthread_mutex_t lock; /* of all that changes above, while threads are active */
     pthread_cond_t changed, ended; /* there may be prisms to try; no thread is active */

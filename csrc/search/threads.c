@@ -14,9 +14,6 @@
 #include "arith/machine.h"
 #include "search/search.h"
 
-/* The first thread works alone for this time: the workspaces of others also take time to set up. */
-static const double ALONE_SECONDS = 0.01;
-
 struct worker {
     cv_search *s;
     void *work;                         /* the method's */
@@ -141,14 +138,20 @@ static void *run(void *data)
     cv_search *const s = w->s;
 
     pthread_mutex_lock(&s->lock);
-    if (s->stage == READ)
+    const int first = s->stage == READ && !is_to_stop(&s->stop);
+    if (first)
         s->stage = SPOILT;              /* until this thread has set the search up */
+    while (s->stage == SPOILT && !first && !is_to_stop(&s->stop))
+        pthread_cond_wait(&s->changed, &s->lock);
     if (!machine_is_sound()) {
         s->status = CV_EMACHINE;
-    } else if (w->ready || unlocked(w, begin)) {
-        if (s->stage == SPOILT)
+    } else if (first || !is_to_stop(&s->stop)) {
+        const int ready = w->ready || unlocked(w, begin);
+        if (ready && first) {
             s->stage = PREPARED;
-        if (s->wanted > 0)
+            pthread_cond_broadcast(&s->changed);
+        }
+        if (ready && s->trying)
             grow(w);
         if (!machine_is_sound())
             s->status = CV_EMACHINE;
@@ -190,17 +193,6 @@ static int add_thread(cv_search *s)
     return CV_OK;
 }
 
-/* Lets the others begin, as many as there are to be, unless the work is done, or what all need is
-   not yet set up.  Fewer will do. */
-static void add_threads(cv_search *s)
-{
-    if (s->stage != PREPARED)
-        return;
-    while (!is_to_stop(&s->stop) && s->active < s->wanted && add_thread(s) == CV_OK)
-        continue;
-    s->wanted = s->active;
-}
-
 int cv_start(cv_search *s, int threads, long max_leaves, double max_points)
 {
     int status;
@@ -212,38 +204,27 @@ int cv_start(cv_search *s, int threads, long max_leaves, double max_points)
         s->prisms[id].busy = 0;
     s->enough = decided_leaves(s) + max_leaves;
     s->most_points = s->points + max_points;
-    s->wanted = threads;
-    s->began = now();
+    s->trying = threads > 0;
     ask_to_stop(&s->stop, 0);
     pthread_mutex_lock(&s->lock);
-    status = add_thread(s);
+    do
+        status = add_thread(s);         /* Fewer will do. */
+    while (status == CV_OK && --threads > 0);
+    if (s->active > 0)
+        status = CV_OK;
     pthread_mutex_unlock(&s->lock);
     return status;
 }
 
-/* Waits until a time at most. */
-static void wait_until(cv_search *s, double end)
-{
-    const double whole = floor(end);
-    const struct timespec t = { (time_t)whole, (long)(1e9 * (end - whole)) };
-
-    while (s->active > 0 && now() < end)
-        pthread_cond_timedwait(&s->ended, &s->lock, &t);
-}
-
 int cv_wait(cv_search *s, double seconds)
 {
-    const double end = now() + fmin(seconds, MOST_SECONDS), others = s->began + ALONE_SECONDS;
-    int working;
+    const double end = now() + fmin(seconds, MOST_SECONDS), whole = floor(end);
+    const struct timespec t = { (time_t)whole, (long)(1e9 * (end - whole)) };
 
     pthread_mutex_lock(&s->lock);
-    if (s->active < s->wanted) {
-        wait_until(s, fmin(end, others));
-        if (now() >= others)
-            add_threads(s);
-    }
-    wait_until(s, end);
-    working = s->active > 0;
+    while (s->active > 0 && now() < end)
+        pthread_cond_timedwait(&s->ended, &s->lock, &t);
+    const int working = s->active > 0;
     pthread_mutex_unlock(&s->lock);
     if (working)
         return CV_RUNNING;
