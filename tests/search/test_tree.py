@@ -93,7 +93,7 @@ def test_choice_of_kinds():
     assert [leaf.kind for leaf in leaves(SMALL, "0P", "?")] == ["?"]
 
 
-@pytest.mark.parametrize("text", ["5", "0P!", "PP", "0PSU", "P ", "\u00e4"])
+@pytest.mark.parametrize("text", ["6", "0P!", "PP", "0PSU", "P ", "\u00e4"])
 def test_not_a_tree(text):
     with pytest.raises(TreeError):
         complete(text)
