@@ -7,6 +7,8 @@ task is a column, a cell of a map, or a list of prisms that are to be decided.""
 import concurrent.futures
 import contextlib
 import os
+import pickle
+import platform
 import threading
 import time
 import warnings
@@ -21,8 +23,8 @@ from ..version import __version__
 LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 ATTEMPTS = 4                        # at a task whose workers die
 ASK_SECONDS = 1.0                   # between two questions to a Dask scheduler
-# Evaluated by a Dask worker, on which the package may be missing.
-PROBE = "__import__('converse.prover.native').__version__"
+# Evaluated by a worker of an executor, on which the package may be missing.
+ANSWER = "__import__('converse.prover.workers', fromlist='*').answer(release, task)"
 
 
 def count_workers(executor=None):
@@ -80,7 +82,7 @@ class WorkerPool(Resource):
         self.jobs, self.here = jobs, executor is None
         self.executor = executor or concurrent.futures.ThreadPoolExecutor(jobs or count_workers())
         self.client = getattr(executor, "_client", None)        # of Dask
-        self.due, self.cores, self.probes, self.waiting = 0.0, 0, {}, ""    # of _ask
+        self.due, self.cores, self.waiting = 0.0, 0, ""         # of _ask
         self.running, self.stop = {}, threading.Event()         # running: future -> _Task
 
     def acquire(self):
@@ -106,7 +108,7 @@ class WorkerPool(Resource):
         task = next_task()
         while task or self.running:
             size = self.size
-            while task and size and len(self.running) <= size:  # one task waits for a worker
+            while task and len(self.running) <= size:           # one task waits for a worker
                 self._submit(_Task(task[0], task[1], task[2:]))
                 task = next_task()
             for key, result in self._take():
@@ -118,10 +120,13 @@ class WorkerPool(Resource):
 
     def _submit(self, task):
         """WorkersGone: nobody takes the task; MemoryError: memory lacks for another thread."""
-        arguments = (*task.arguments, self.stop.is_set) if self.here else task.arguments
+        call, arguments = task.call, (*task.arguments, self.stop.is_set)
+        if not self.here:
+            call, arguments = eval, (ANSWER, {"release": __version__, "task": pickle.dumps(
+                (task.call, task.arguments))})
         try:
             with postponed():
-                self.running[self.executor.submit(task.call, *arguments)] = task
+                self.running[self.executor.submit(call, *arguments)] = task
         except Exception as error:
             if not self.here:
                 raise self._gone(error) from None
@@ -134,8 +139,6 @@ class WorkerPool(Resource):
         most.  A task whose worker died is handed out again.  WorkersGone: they die again and again;
         an exception of this program, missing memory, and whatever a thread of this process raised
         is passed on."""
-        if not self.running:
-            time.sleep(LOOK_SECONDS)
         with postponed():
             done = concurrent.futures.wait(self.running, LOOK_SECONDS,
                                            concurrent.futures.FIRST_COMPLETED)[0]
@@ -164,14 +167,14 @@ class WorkerPool(Resource):
 
     @property
     def size(self):
-        """How many tasks to have under way; 0, with a RuntimeWarning, while a cluster lacks
-        workers.  WorkersGone: there will be none."""
+        """How many tasks to have under way, without the one that waits; 0, with a RuntimeWarning,
+        while a cluster lacks workers.  WorkersGone: there will be none."""
         if self.client is None:
             return self.jobs or count_workers(None if self.here else self.executor)
         if time.monotonic() >= self.due:
             self._ask()
             self.due = time.monotonic() + ASK_SECONDS
-        return self.cores and (self.jobs or 2 * self.cores)
+        return min(self.cores, 1) * (self.jobs or 2 * self.cores)
 
     def _gone(self, error=None):
         """The exception to raise where no task can be given to the workers."""
@@ -183,56 +186,36 @@ class WorkerPool(Resource):
         if self.here or isinstance(error, (ConverseError, MemoryError)):
             raise error
         self.check()
-        if task.attempts > 1:
-            return
         words = " ".join(str(error).split()).partition(". ")[0]
-        if "deserialization" in words:  # by a Dask scheduler
-            raise WorkersGone("the Dask scheduler cannot read the tasks: converse is missing "
-                              "there, or its packages are others; install converse-kam %s as here "
-                              "(%s)"
-                              % (__version__, words))
-        raise WorkersGone("the workers keep failing (%s: %s)" % (type(error).__name__, words))
+        if isinstance(error, (ImportError, AttributeError)):
+            raise WorkersGone("a worker has no converse %s (%s); install converse-kam %s where the "
+                              "workers run" % (__version__, words, __version__))
+        if task.attempts <= 1:
+            raise WorkersGone("the workers keep failing (%s: %s)" % (type(error).__name__, words))
 
     def _ask(self):
-        """Asks a Dask cluster for its workers, and each new worker whether it has this program:
-        without it the first task would kill it."""
+        """Asks a Dask cluster for its workers."""
         self.check()
-        there, lack = {}, "the Dask scheduler does not answer"
+        self.cores, lack = 0, "the Dask scheduler does not answer"
         with contextlib.suppress(Exception):    # of many kinds, among them that time is up
             if self.client.status == "running":
-                there = self.client.nthreads(callback_timeout=10)
-                lack = "the Dask cluster has no workers"
-                for address in there or [None]:     # a cluster that adapts waits for a task
-                    if address not in self.probes:
-                        self.probes[address] = self.client.submit(
-                            eval, PROBE, pure=False, workers=address)
-                if there:
-                    self.probes.pop(None, None)
-        self.cores = sum(threads for address, threads in there.items() if self._is_fit(address))
-        self._wait_for("" if there else lack)
+                self.cores = sum(self.client.nthreads(callback_timeout=10).values())
+                lack = "" if self.cores else "the Dask cluster has no workers"
+        if lack and lack != self.waiting:
+            warnings.warn(lack + "; waiting", RuntimeWarning, stacklevel=3)
+        self.waiting = lack
 
-    def _is_fit(self, address):
-        """Has a worker this release of the program?  False: not known yet; WorkersGone: no."""
-        probe = self.probes.get(address)
-        if probe is None or probe is True or probe.status not in ("finished", "error"):
-            return probe is True
-        try:
-            release, why = probe.result(), ""
-        except OSError:                 # the answer is lost with the worker or the scheduler
-            return False
-        except Exception as error:
-            release, why = "none", " (%s)" % error
-        if release != __version__:
-            raise WorkersGone("the worker at %s needs converse %s and has %s%s; install "
-                              "converse-kam %s where the workers and the scheduler run"
-                              % (address, __version__, release, why, __version__))
-        self.probes[address] = True
-        return True
 
-    def _wait_for(self, what):
-        if what and what != self.waiting:
-            warnings.warn(what + "; waiting", RuntimeWarning, stacklevel=3)
-        self.waiting = what
+def answer(release, task):
+    """The result of a task, (function, arguments) by pickle, of another process that has a release
+    of this program.  A worker calls it; before, neither it nor a scheduler must import anything.
+    WorkersGone: the releases differ."""
+    if release != __version__:
+        raise WorkersGone("the worker on %s needs converse %s and has %s; install converse-kam %s "
+                          "where the workers run"
+                          % (platform.node(), release, __version__, release))
+    call, arguments = pickle.loads(task)
+    return call(*arguments)
 
 
 class Filling(Resource):

@@ -16,7 +16,7 @@ from fractions import Fraction
 import pytest
 from conftest import ROOT, around
 
-from converse import ConverseError, Proof, prove
+from converse import ConverseError, Proof, __version__, prove
 from converse.model.exact import decimal_text
 from converse.model.map import LINE
 from converse.prover import native, run, shared, tree, workers
@@ -104,12 +104,12 @@ class Unreliable(concurrent.futures.ThreadPoolExecutor):
         super().__init__(workers)
         self.tasks, self.lost = 0, []
 
-    def submit(self, work, task, cells, *rest):
+    def submit(self, work, *task):
         self.tasks += 1
-        if self.tasks % 3 == 0 and cells not in self.lost:
-            self.lost.append(cells)
+        if self.tasks % 3 == 0 and task not in self.lost:
+            self.lost.append(task)
             work = die
-        return super().submit(work, task, cells, *rest)
+        return super().submit(work, *task)
 
 
 def die(*args):
@@ -273,15 +273,15 @@ def test_dask_without_workers(proof, cluster):
     adaptive.stop()
 
 
-def test_dask_without_this_program(cluster, monkeypatch):
-    """A worker that lacks it would die of the first task: it is not sent."""
-    monkeypatch.setattr(workers, "PROBE", workers.PROBE.replace("converse", "no_such_package"))
+@pytest.mark.parametrize("name, value, words", [
+    ("ANSWER", workers.ANSWER.replace("converse", "no_such_package"), "has no.*no_such_package"),
+    ("__version__", "0.1", "needs converse 0.1 and has %s" % __version__)])
+def test_dask_without_this_program(cluster, monkeypatch, name, value, words):
+    """A worker that lacks it, or has another release, says so."""
+    monkeypatch.setattr(workers, name, value)
     _, client = cluster(1)
-    executor = client.get_executor()
-    monkeypatch.setattr(executor, "submit", None)
-    with pytest.raises(workers.WorkersGone,
-                       match="needs converse .* has none .*no_such_package"):
-        prove(LONG, method="loewner", executor=executor)
+    with pytest.raises(workers.WorkersGone, match=words):
+        prove(LONG, method="loewner", executor=client.get_executor())
 
 
 def test_dask_workers_that_join_later(proof, ends, cluster):
@@ -293,7 +293,7 @@ def test_dask_workers_that_join_later(proof, ends, cluster):
     def submit_and_grow(*args):
         if len(submitted) == 3:
             cluster(2)
-            client.run(eval, workers.PROBE)     # which imports the package, before time is short
+            client.run(eval, "__import__('converse.prover.shared')")     # before time is short
         submitted.append(submit(*args))
         under_way.append(sum(not future.done() for future in submitted))
         return submitted[-1]
@@ -354,17 +354,19 @@ sys.exit(main())
 """
     with contextlib.ExitStack() as stack:
         def start(*arguments):
-            process = subprocess.Popen([sys.executable, "-m", *arguments, "--no-dashboard"],
+            process = subprocess.Popen([sys.executable, *arguments, "--no-dashboard"],
                                        text=True,
                                        cwd=tmp_path, stdout=subprocess.DEVNULL,
                                        stderr=subprocess.PIPE)
             stack.callback(process.kill)
             return process
 
-        scheduler = start("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0")
+        scheduler = start("-c", "import sys; sys.modules['converse'] = None; from distributed.cli."
+                          "dask_scheduler import main; main()",     # It needs no converse.
+                          "--host", "127.0.0.1", "--port", "0")
         address = next(re.search(r"tcp://127.0.0.1:[0-9]+", said)[0] for said in scheduler.stderr
                        if "Scheduler at" in said)
-        start("distributed.cli.dask_worker", address, "--no-nanny", "--nthreads", "1")
+        start("-m", "distributed.cli.dask_worker", address, "--no-nanny", "--nthreads", "1")
         (tmp_path / "a.in").write_text(input_text(LONG))
         result = subprocess.run(
             [sys.executable, "-c", code, str(scheduler.pid), "--dask", address, "--method",
