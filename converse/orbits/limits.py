@@ -23,6 +23,7 @@ MIN_STEP_RATIO = 1e-9           # Newton's step to a maximum of V ignores flatte
 NULL_EIGENVALUE = 1e-8          # An eigenvalue below this in size leaves the phase undetermined.
 MAX_PIVOTS = 200000             # The pivots pass at most this, or five times round the orbit.
 MAX_LOG_EXCESS = 40.0           # Beyond e^40 a double does not notice 4.
+DOUBLE_PLACES = 1074            # The least double is 2^-1074.
 
 # ---- continuation and onsets
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .limits import ANGLE_ROUNDING, MAX_LOG_EXCESS
+from .limits import ANGLE_ROUNDING, DOUBLE_PLACES, MAX_LOG_EXCESS
 
 
 class Monodromy(NamedTuple):
@@ -39,16 +39,22 @@ def product(steps):
 
 def log_weak_excess(bends):
     """log (rho - 2) of an orbit of one angle, the bends h = -eps V'' of whose points are so small
-    that q times the sum of |h| is below 1.  The Hessian's 2 + h has no digits of h; here DF - 1 is
-    kept, and (1 + b)(1 + a) = 1 + (a + b + b a)."""
-    steps = np.zeros((len(bends), 2, 2))
-    steps[:, 0, 0] = steps[:, 1, 0] = bends
-    steps[:, 0, 1] = 1
-    while len(steps) > 1:
-        first, then = steps[:-1:2], steps[1::2]
-        pairs = first[:len(then)] + then + then @ first[:len(then)]
-        steps = np.concatenate([pairs, steps[-1:]]) if len(steps) % 2 else pairs
-    return log_of(np.trace(steps[0]))
+    that q times the sum of |h| is below 1.
+
+    The Hessian's 2 + h has no digits of h; and where the bends cancel, the product of all of them
+    may be what is left.  So the steps p += h x, x += p are made with integers, in units so small
+    that the least double has 2^50 times as many units as all roundings together: each is of one
+    unit, and grows to at most e q units."""
+    one = 1 << DOUBLE_PLACES + 52 + 2 * len(bends).bit_length()
+    ratios = [h.as_integer_ratio() for h in bends.tolist()]
+
+    def once_round(x, p):
+        for above, below in ratios:
+            p += above * x // below
+            x += p
+        return x, p
+
+    return log_of((once_round(one, 0)[0] + once_round(0, one)[1] - 2 * one) / one)
 
 
 def log_of(x):

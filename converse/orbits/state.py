@@ -348,7 +348,9 @@ class PeriodicOrbit:
     def residue(self) -> float:
         """Greene's residue (2 - trace DF^q)/4 of an orbit of one angle: below 0 hyperbolic, as
         minima are, from 0 to 1 elliptic, above 1 hyperbolic with reflection.  Infinite beyond
-        1e308.  ValueError for n = 2: see indices."""
+        1e308.  It is that of the points as doubles: where eps V'' of the points cancel, their
+        rounding moves it by about 1e-16 q times the sum of |eps V''|.  ValueError for n = 2: see
+        indices."""
         if self.potential.n != 1:
             raise ValueError("Greene's residue is of maps with one angle; with two there are the "
                              "stability indices, state.indices")

@@ -111,21 +111,24 @@ def stationary():
             yield state.relax(eps) if start is potential.start else newton(state, eps)[0]
 
 
-@pytest.mark.parametrize("eps", [1e-300, 1e-12, 1e-6, 0.2])
+@pytest.mark.parametrize("eps", [1e-300, 1e-100, 1e-12, 1e-6, 1e-3, 0.2])
 @pytest.mark.parametrize("p, q", [(0, 1), (1, 2), (1, 3), (2, 5)])
 def test_small_residues_have_all_their_digits(p, q, eps):
-    """Those that the points, as doubles, have: the bends of (0, 1) have one sign, and the residue
-    is eps/4; those of the other types nearly cancel."""
+    """Those that the bends, as doubles, have: that of (0, 1) is eps, those of (1, 2) are -eps and
+    eps, and the others nearly cancel."""
     state = orbits.straight(orbits.standard, p, q)
-    state = state if eps < 1e-100 else state.relax(eps)
+    state = state if eps < 1e-20 else state.relax(eps)
     state = dataclasses.replace(state, eps=eps)
-    with mpmath.workdps(700):
+    with mpmath.workdps(1600):
         product, bends = mpmath.eye(2), -state.eps * state.potential.evaluate(
             state.base + state.u)[2][:, 0, 0]
         for h in map(mpmath.mpf, bends.tolist()):
             product = mpmath.matrix([[1 + h, 1], [h, 1]]) * product
         truth = float((2 - product[0, 0] - product[1, 1]) / 4)
-    assert abs(state.residue - truth) < 4e-16 * q * float(abs(bends).sum()) + 1e-12 * abs(truth)
+    assert state.residue == pytest.approx(truth, rel=2e-13 if q * abs(bends).sum() < 1 else 1e-9,
+                                          abs=0)
+    if q == 2 and eps in (1e-6, 1e-12, 1e-100):
+        assert state.residue == pytest.approx(eps ** 2 / 4, rel=2e-13)
     if q == 1:
         assert state.residue == pytest.approx(-eps / 4, rel=1e-12)
         assert state.indices[0] == pytest.approx(2 + eps, rel=1e-15)
