@@ -11,15 +11,18 @@ import itertools
 from dataclasses import replace
 from fractions import Fraction
 from math import gcd
-from typing import List, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from .exact import Ends, pi_bounds, rounded, sine_bounds
 from .lattice import echelon
 from .map import HIGHEST
+from .potential import Term
 from .problem import IDENTITY, Frame, Problem, identity, inverse, moves, periods, ranges, rows
 
 EXCHANGED = 0, 1, 1, 0              # the frame with v0 and v1 for the second angle and the first
-DIAGONALS = 1, 1, 1, -1             # v0 along the diagonal, v1 across it
+# v0 along the diagonal; n v1 = x0 - x1, n v2 = x1 - x2.  Where angles may be exchanged it is enough
+# that x0 >= x1 >= ... >= x0 - 2, in units of pi, so that v1, v2, ... go from 0 to 2/n.
+DIAGONALS: Dict[int, Frame] = {2: (1, 1, 1, -1), 3: (1, 2, 1, 1, -1, 1, 1, -1, -2)}
 REVERSAL, EXCHANGE = "reversal of time", "exchange of the angles"
 DIGITS = 40
 PLACES = 9                          # of the ends of a region that is chosen, which have one more to
@@ -38,7 +41,9 @@ def symmetries_used(problem: Problem, xstar: Optional[Point]) -> Optional[List[s
     (low0, high0), *rest = problem.region
     used = []
     if any(high - low < period for (low, high), period in zip(rest, others)):
-        if problem.v1[1] < 1 or xstar is None or not folds(problem, xstar):
+        if xstar is None or problem.frame != DIAGONALS[problem.size] or any(
+                low > 0 or high < Fraction(2, problem.size) for low, high in rest) or \
+                not exchangeable(problem, xstar):
             return None
         used = [EXCHANGE]
     if high0 - low0 < period0:
@@ -52,21 +57,24 @@ def symmetries_used(problem: Problem, xstar: Optional[Point]) -> Optional[List[s
 
 
 def exchangeable(problem: Problem, xstar: Point) -> bool:
-    """Does the exchange of the two angles leave x* alone, and the patch and the shifts, with the
-    parameters in some order?"""
-    if problem.size > 2 or Fraction(xstar[0]) != Fraction(xstar[1]) or problem.factor is not None:
+    """Does each exchange of neighbouring angles leave x* alone, and the patch and the shifts, with
+    the parameters in some order?"""
+    if len(set(map(Fraction, xstar))) > 1 or problem.factor is not None:
         return False
-    waves = list(zip(problem.waves, problem.amplitude, *problem.parts))
-    here = _sums(waves)
-    return any(_sums([((k1, k0, phase), p, *(parts[m] for m in order))
-                      for (k0, k1, phase), p, *parts in waves]) == here
-               and all(s == problem.shifts[m] for s, m in zip(problem.shifts, order))
-               for order in itertools.permutations(range(len(problem.parts))))
+    here, orders = _sums(problem.terms), list(itertools.permutations(range(len(problem.parts))))
+
+    def kept(i, order):
+        return _sums(Term((*k[:i], k[i + 1], k[i], *k[i + 2:]), phase, p,
+                          tuple(parts[m] for m in order))
+                     for k, phase, p, parts in problem.terms) == here and all(
+            s == problem.shifts[m] for s, m in zip(problem.shifts, order))
+
+    return all(any(kept(i, order) for order in orders) for i in range(problem.size - 1))
 
 
 def folds(problem: Problem, xstar: Point) -> bool:
     """Is the region proved together with its mirror image, in which v1 has the other sign?"""
-    return problem.frame == DIAGONALS and problem.v1[0] <= 0 <= problem.v1[1] and \
+    return problem.frame == DIAGONALS[2] and problem.v1[0] <= 0 <= problem.v1[1] and \
         not any(s1 for _, s1 in problem.shifts) and exchangeable(problem, xstar)
 
 
@@ -92,12 +100,12 @@ def skips(problem: Problem, xstar: Point) -> bool:
         exchangeable(problem, xstar)
 
 
-def _sums(waves):
+def _sums(terms):
     """What the amplitudes of waves with the same k and phase add up to, and their parts."""
     sums = {}
-    for wave, *numbers in waves:
-        before = sums.get(wave, (0,) * len(numbers))
-        sums[wave] = tuple(map(Fraction.__add__, map(Fraction, before), numbers))
+    for k, phase, p, parts in terms:
+        before = sums.get((k, phase), (0,) * (1 + len(parts)))
+        sums[k, phase] = tuple(a + b for a, b in zip(before, (p, *parts)))
     return {wave: numbers for wave, numbers in sums.items() if any(numbers)}
 
 
@@ -154,18 +162,18 @@ def reduced(problem: Problem, xstar: Point, frame: Optional[Frame] = None) -> Pr
     else:
         v0 = (rounded(low - MARGIN, PLACES, up=False),
               rounded(high + period0 / 2 + MARGIN, PLACES, up=True))
-    if problem.frame == DIAGONALS and exchangeable(problem, xstar):
-        others = [Fraction(1)]
+    if problem.frame == DIAGONALS[problem.size] and exchangeable(problem, xstar):
+        others = [rounded(Fraction(2, problem.size), PLACES, up=True)] * len(others)
     return replace(problem, **ranges([v0, *((Fraction(0), period) for period in others)]))
 
 
 def _frame(problem, xstar):
-    """v0 along the wave that bends most, the others across it; or, of two angles, where that may
-    be, along the diagonal and across it."""
+    """v0 along the wave that bends most, the others across it; or, where that may be, along the
+    diagonal and across it."""
     if problem.factor is not None:
         return EXCHANGED if problem.factor else IDENTITY
     if exchangeable(problem, xstar):
-        return DIAGONALS
+        return DIAGONALS[len(xstar)]
     k = max(problem.terms, key=lambda term: term.most * sum(x * x for x in term.k)).k
     k = tuple(x // gcd(*k) for x in k)
     if sum(map(bool, k)) == 1:          # along a coordinate, which comes first
