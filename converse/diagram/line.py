@@ -7,6 +7,7 @@ cost twice the points.  Cells next to excluded ones come first.  The tasks of a 
 before any of them is done, so the result does not depend on how many are done at a time.
 """
 
+import itertools
 from fractions import Fraction
 from typing import Any, Dict, List, NamedTuple, Tuple
 
@@ -20,7 +21,8 @@ FIRST_POINTS = {1: 1 << 15, 2: 1 << 18}     # of the first try at a cell, by the
 DOUBT = Fraction(1, 2)                  # of its weight, where the middle of a cell is not excluded
 SEEN, EDGE = 16, 256    # A cell with a torus that is seen is so much less urgent; a neighbour of
                         # excluded values is so much more urgent.
-Hint = Tuple[Fraction, none.Point]      # a value, and the x* over which it is excluded
+Hint = Tuple[Fraction, Tuple[none.Point, ...]]  # a value, and the x* over which it is excluded
+NEAREST = 8                             # x* of neighbours that are suggested for a cell
 
 
 class Cell(NamedTuple):
@@ -105,7 +107,9 @@ class _Line:
             known.get(kind, known["run"]).append([kind, *words] if kind not in known else words)
         for low, high, points, weight in known["cell"]:
             self.cells.append(Cell(Fraction(low), Fraction(high), int(points), Fraction(weight)))
-        self.hints = [(Fraction(value), (x0, x1)) for value, x0, x1 in known["hint"]]
+        size = max(2, diagram.family.dimension)
+        self.hints = [(Fraction(value), tuple(zip(*[iter(words)] * size)))
+                      for value, *words in known["hint"]]
         self.spent = [int(x) for words in known["spent"] for x in words] or [0, 0]
         self.tori = some.Runs(diagram, known["run"])
         if not diagram.search and diagram.open:
@@ -116,7 +120,8 @@ class _Line:
         """The state, for the file."""
         return ["spent %d %d" % tuple(self.spent)] + [
             "cell %s %s %d %s" % cell for cell in self.cells] + [
-            "hint %s %s %s" % (value, *xstar) for value, xstar in self.hints] + self.tori.lines()
+            " ".join(["hint", str(value), *itertools.chain(*xstars)])
+            for value, xstars in self.hints] + self.tori.lines()
 
     def round(self) -> List[Any]:
         """The tasks that are done next."""
@@ -142,10 +147,10 @@ class _Line:
             self.cells.append(task)
         else:
             self.diagram.points += outcome.points
-            if outcome.xstar:
-                self.hints.append((task.middle, outcome.xstar))
+            if outcome.xstars:
+                self.hints.append((task.middle, outcome.xstars))
             if not outcome.proof:
-                self.cells += task.halves(outcome.xstar is None) if task.weight else \
+                self.cells += task.halves(not outcome.xstars) if task.weight else \
                     self._divided(task)
 
     def _cells(self):
@@ -181,4 +186,4 @@ class _Line:
     def _near(self, cell):
         """The x* over which the nearest values are excluded."""
         nearest = sorted(self.hints, key=lambda hint: abs(hint[0] - cell.middle))
-        return list(dict.fromkeys(xstar for _, xstar in nearest))[:none.HINTS]
+        return list(dict.fromkeys(itertools.chain(*(xstars for _, xstars in nearest))))[:NEAREST]

@@ -1,12 +1,12 @@
-"""No torus over a cell of the parameters: x* is chosen by what it leaves.
+"""No torus over a cell of the parameters: x* are chosen by what they leave.
 
 Near the last torus only some x* exclude all successors, and which they are changes with the
 parameters within a percent.  So a cell is first tried at its middle.  Over each x* of a coarse
 scan of the torus a tree of few cuts is grown; the x* that leaves the fewest prisms is improved by
-steps; and a cell is given the x* that excludes its middle at the least cost.  A scan costs as much
-as many tries, so first come the x* of neighbours, and those that steps from these lead to.  All
-costs are points of orbits, so the outcome depends on the cell and on the x* that are suggested, not
-on the machine.
+steps; and a cell is given the x* that excludes its middle at the least cost.  Where one x* does not
+do, or not for the whole cell, what it leaves is linked to others (linked.py).  A scan costs as much
+as many tries, so first come the x* of neighbours.  All costs are points of orbits, so the outcome
+depends on the cell and on the x* that are suggested, not on the machine.
 """
 
 import itertools
@@ -18,12 +18,10 @@ from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 from ..model.exact import decimal_text
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
-from ..prover import native
 from ..prover.proof import Proof, Tree
-from ..prover.run import prove, ready
+from ..prover.run import ready
 from ..prover.settings import Settings
-
-Point = Tuple[str, str]                 # x*, as the prover takes it
+from .linked import DEPTH, Growth, Point, linked
 
 SCAN = {1: 62, 2: 8}                    # x* of a scan in a turn
 SCAN_CUTS, STEP_CUTS = {1: 8, 2: 12}, {1: 14, 2: 16}    # of the trees that compare x*
@@ -31,11 +29,9 @@ SCAN_LENGTH = 400                       # the most points of their orbits; and o
 SCAN_POINTS = {1: 20000, 2: 1 << 17}
 LEAST_STEP = {1: 0.003, 2: 0.02}        # radians, by which x* is moved
 BASINS, CHOICES = 3, 6                  # x* that are improved; that are then tried to the end
-HINTS = 3                               # x* of neighbours that are tried first
-DEPTH = 60                              # cuts of a proof
-RANGE_FACTOR, RANGE_TRIES = 6, 2        # points of a range, by those of its middle; x* for it
+HINTS = 3                               # x* of neighbours that are tried first, each alone
+RANGE_FACTOR = 4                        # points of a range over one x*, by those of its middle
 CHEAP = 4                               # A neighbour's x* that costs such a part is good.
-TREE_POINTS = 1000                      # A tree costs as much as so many more, to set it up.
 SCALE = 10 ** 4                         # x* has four decimals
 
 
@@ -48,14 +44,14 @@ class Outcome(NamedTuple):
         How many points of orbits were computed.
     proof
         The Proof that no map of the cell has invariant tori; None: none was found.
-    xstar
-        An x* over which the middle of the cell is excluded; None: none was found, and a torus may
-        be there.
+    xstars
+        x* over which the middle of the cell is excluded; (): none was found, and a torus may be
+        there.
     """
 
     points: int
     proof: Optional[Proof]
-    xstar: Optional[Point]
+    xstars: Tuple[Point, ...]
 
 
 def exclude(family: SymplecticMap, middle: SymplecticMap, hints: Sequence[Point], points: int,
@@ -78,73 +74,70 @@ def exclude(family: SymplecticMap, middle: SymplecticMap, hints: Sequence[Point]
     Outcome
         None if it was stopped.
     """
-    search = _Search(Problem.of(middle), points, stop)
-    problem, enough = Problem.of(family), points / CHEAP
-    best: Tuple[float, Optional[Point]] = (math.inf, None)
-    for xstars in search.candidates(hints[:HINTS]):
-        choices = search.cheapest(xstars)
-        best = min([best, *choices[:1]], key=lambda choice: choice[0])
-        for cost, xstar in choices[:RANGE_TRIES]:
-            grown = search.proof(problem, xstar, RANGE_FACTOR * max(points, cost))
-            if grown:
-                proof = prove(resume=grown, jobs=1)     # Its tree is whole.
-                return Outcome(search.points, proof if proof.no_tori else None, xstar)
-        if best[0] < enough:            # A half of the cell costs less than other x*.
-            break
-        enough = math.inf
-    return None if search.stopped else Outcome(search.points, None, best[1])
+    search, problem = _Search(Problem.of(middle), points, stop), Problem.of(family)
+    known: Sequence[Point] = ()
+    for xstars, alone in search.candidates(hints):
+        costs, proof = search.cheapest(xstars), None
+        cost, used = (costs[0][0], [costs[0][1]]) if costs else (0, [])
+        if costs:
+            proof = search.proof(problem, used[0], RANGE_FACTOR * max(points, cost))
+        elif not alone:
+            one, used = linked(search, search.problem, [*xstars[:1], *hints], points)
+            used = used if one else []
+        if used and not proof:
+            proof, used = linked(search, problem, [*used, *hints], points)
+        known = known or used
+        if used and (proof or not alone or cost < points / CHEAP):  # A half costs less than a scan.
+            return Outcome(search.points, proof, tuple(used))
+    return None if search.stopped else Outcome(search.points, None, tuple(known))
 
 
-class _Search:
-    """The choice of x* for one map.  points: how many have been computed so far; stopped: whether
-    a try was broken off."""
+class _Search(Growth):
+    """The choice of x* for one map."""
 
     def __init__(self, problem, most, stop):
-        self.problem, self.most, self.stop = problem, most, stop
-        self.points = self.spent = 0
-        self.stopped = False
+        super().__init__(stop)
+        self.problem, self.most = problem, most
         self.q = next((k for k, _ in problem.present), (1, 0))
         self.axes = 1 if problem.is_flat else 2         # V depends on q.y alone, or on both angles
 
-    def _grown(self, problem, xstar, cuts, points, stubborn, longest=native.ORDINARY):
-        """The Proof that a search over x* begins with, and what became of it; None: stopped."""
-        before = ready(Proof((Tree(problem, xstar),), Settings("loewner", cuts, stubborn=stubborn)))
-        grown = None if self.stopped else native.grow(
-            native.Task(before.problem, before.settings, before.xstar, longest), points=points,
-            look=self.stop)
-        self.stopped = self.stopped or grown is None or self.stop()
-        self.spent = int(grown.points) if grown else 0
-        self.points += self.spent + TREE_POINTS
-        return before, grown
-
     def proof(self, problem, xstar, points):
         """The proof of a problem over x*, if it takes no more points; else None."""
-        before, grown = self._grown(problem, xstar, DEPTH, points, False)
-        if grown is None or grown.cells or grown.counts.undecided:
+        before = ready(Proof((Tree(problem, xstar),), Settings("loewner", DEPTH)))
+        found = self.grow(before.problem, xstar, DEPTH, points)
+        if found is None:
             return None
-        return replace(before.with_tree(0, text=grown.text), counts=grown.counts)
+        grown, search = found
+        proof = replace(before.with_tree(0, text=grown.text), counts=grown.counts,
+                        constants=search.constants, at_once=search.at_once)
+        return proof if proof.no_tori else None
 
     def _left(self, place, cuts):
         """How much a small tree over a place leaves, and what it costs."""
-        _, grown = self._grown(self.problem, self._point(place), cuts, SCAN_POINTS[self.axes], True,
-                               SCAN_LENGTH)
-        if grown is None:
-            return math.inf, 0
-        return math.inf if grown.cells else grown.counts.undecided, self.spent
+        xstar = self._point(place)
+        before = ready(Proof((Tree(self.problem, xstar),), Settings("loewner", cuts)))
+        found = self.grow(before.problem, xstar, cuts, SCAN_POINTS[self.axes], True, SCAN_LENGTH)
+        return (math.inf, 0) if found is None else (found[0].counts.undecided, self.spent)
 
     def candidates(self, hints):
-        """Yields lists of x*: those of neighbours, those that steps from these lead to, and those
-        that a scan leads to."""
-        yield hints
-        near = [self._place(tuple(map(Fraction, hint))) for hint in hints]
-        yield [x for x in self._improved(near, 8 * LEAST_STEP[self.axes]) if x not in hints]
-        yield self._improved(self._basins(), math.pi / SCAN[self.axes])
+        """Yields lists of x*, and whether only a single one is to be tried: the x* of neighbours;
+        those that steps from these lead to; and those that a scan leads to."""
+        near = [self._place(tuple(map(Fraction, hint))) for hint in hints[:HINTS]]
+        if hints:
+            yield hints[:HINTS], True
+            yield self._improved(near, 8 * LEAST_STEP[self.axes]), False
+        yield self._improved(self._basins(), math.pi / SCAN[self.axes]), False
 
     def cheapest(self, candidates) -> List[Tuple[int, Point]]:
         """Those of these x* over which the map is excluded, with the points that this takes, the
         fewest first."""
-        return sorted((self.spent, xstar) for xstar in candidates
-                      if self.proof(self.problem, xstar, self.most))
+        found: List[Tuple[int, Point]] = []
+        for xstar in candidates:
+            before = ready(Proof((Tree(self.problem, xstar),), Settings("loewner", DEPTH)))
+            if self.grow(before.problem, xstar, DEPTH, min([self.most, *(
+                    cost for cost, _ in found)])):
+                found.append((self.spent, xstar))
+        return sorted(found)
 
     def _improved(self, places, first_step) -> List[Point]:
         """The most promising x*, from places that are improved by ever smaller steps."""

@@ -175,14 +175,14 @@ class Links:
 
     def of(self, cell: Cell) -> Link:
         """The link for the parameters of a cell."""
-        slices = _slices(cell)
+        slices = slices_of(cell)
         if slices not in self.known:
             largest = min(self.largest, _largest(self.crests, *slices))
             self.known[slices] = Link.between(_slice(self.problem, *slices), largest, *self.points)
         return self.known[slices]
 
 
-def _slices(cell):
+def slices_of(cell: Cell) -> Cell:
     """The indices and the cuts of a cell along the parameters."""
     along = slice(tree.PARAMETERS[0], tree.PARAMETERS[-1] + 1)
     return cell[0][along], cell[1][along]
@@ -213,9 +213,11 @@ def clusters(problem: Problem, text: str) -> List[List[Cell]]:
     """The undecided cells of the tree, those that are near each other in one cluster; at most
     MOST_CLUSTERS, and fewer cells are near each other then.  [] if that is not to be had."""
     cells = [cell for kind, cell in tree.cells(text) if kind == "U"]
+    whole = [not any(cuts[axis] for _, cuts in cells) for axis in tree.ANGLES]
     gap = LEAST_GAP
-    while gap < 1:
-        found = _joined(cells, [2 * h / gap for h in problem.half[-problem.size:]])
+    while gap < 1:                      # An axis that is not cut is one box long.
+        found = _joined(cells, [1 if uncut else 2 * h / gap for uncut, h in zip(
+            whole, problem.half[-problem.size:])])
         if len(found) <= MOST_CLUSTERS:
             return found
         gap *= 2
@@ -286,7 +288,7 @@ def region_of(problem: Problem, cells: Sequence[Cell], links: Links, shifts: Shi
     is to move with the parameters, from there in their middle."""
     slices: Dict[tuple, List[Cell]] = {}
     for cell in cells:
-        slices.setdefault(_slices(cell), []).append(cell)
+        slices.setdefault(slices_of(cell), []).append(cell)
     return _rounded(_around(links.of(some[0]).image(hull_of(problem, some, shifts))
                             for some in slices.values()))
 

@@ -207,7 +207,7 @@ def _best_start(image, others):
     for weight in 1, 2:
         known.update((point, tuple(weight * x for x in score)) for point, score in known.items()
                      if image.is_half(point))
-        for point in chain(others, _candidates(look, known, start, _ways(image.problem))):
+        for point in chain(others, _candidates(look, known, start, ways(image.problem))):
             if point not in tried:
                 grown = image.proof(point)
                 if grown and tree.complete(grown.text) and not grown.counts.undecided:
@@ -217,7 +217,7 @@ def _best_start(image, others):
     return None if best == start or known[best][0] == inf else best
 
 
-def _ways(problem):
+def ways(problem):
     """Directions of length 1: along the axes of the frame and across.  Where the waves depend on
     one combination of the angles, only along its gradient."""
     columns = list(zip(*rows(problem.frame)))

@@ -24,8 +24,8 @@ def excluded(low, high, hints=(), points=20000):
 def test_x_is_chosen_by_what_it_leaves():
     found = excluded("1.4", "1.5")
     assert found.proof.no_tori
-    again = excluded("1.4", "1.5", [found.xstar])
-    assert again.proof.no_tori and again.xstar == found.xstar
+    again = excluded("1.4", "1.5", found.xstars)
+    assert again.proof.no_tori and again.xstars == found.xstars
     assert 4 * again.points < found.points              # without the scan
 
 
@@ -34,15 +34,29 @@ def test_the_choice_of_x_is_the_same_each_time():
     assert excluded("0.3", "0.301")[::2] == excluded("0.3", "0.301")[::2]
 
 
-def test_a_range_over_whose_middle_an_x_is_known_is_halved_without_a_scan():
+def test_a_range_over_whose_middle_an_x_is_known_is_halved_without_a_scan(monkeypatch):
+    monkeypatch.setattr(none._Search, "_basins", None)
     found = excluded("0.6", "0.66", [("1.8749", "0")])
-    assert found.proof is None and found.xstar == ("1.8749", "0")
-    assert found.points < 400000                        # a scan alone takes more
+    assert found.proof is None and ("1.8749", "0") in found.xstars
+
+
+def test_what_one_x_leaves_is_linked_to_others():
+    """No x* alone excludes the middle."""
+    found = excluded("0.52", "0.53", [("1.7969", "0")], 1 << 16)
+    assert found.proof.no_tori and len(found.proof.trees) > 2
+    assert len({each.xstar for each in found.proof.trees}) > 2 and found.proof.verify()
+    assert all(any(each.problem.shifts[0]) for each in found.proof.parts)
+
+
+def test_a_circle_is_not_linked_away():
+    """One is proved at K1 = 0.5088."""
+    found = excluded("0.508", "0.509", [("1.7969", "0"), ("1.7809", "0"), ("1.8449", "0")])
+    assert found.proof is None
 
 
 @pytest.mark.slow
 def test_no_x_excludes_a_circle():
-    assert excluded("0.42", "0.42")[1:] == (None, None)         # a circle is proved there
+    assert excluded("0.42", "0.42")[1:] == (None, ())         # a circle is proved there
 
 
 @pytest.mark.slow
@@ -103,7 +117,7 @@ def test_nothing_is_looked_for_where_v_is_0():
     runs = some.Runs(Diagram.of(FourierMap({(1, "+cos"): {"k": 1}}, k=(-1, 1))), [])
     assert runs._is_known(F(0)) and not runs._is_known(F(1, 8))
     family = runs.diagram.over(((F(0), F(0)),))
-    assert none.exclude(family, family, [], 2000)[1:] == (None, None)
+    assert none.exclude(family, family, [], 2000)[1:] == (None, ())
 
 
 def test_a_try_at_a_torus_ends_at_the_step_after_it_is_told_to():

@@ -583,7 +583,7 @@ def test_the_linked_input(root):
 def test_one_angle_is_linked():
     """What waves of one combination of the angles do not feel is no way to another point."""
     for waves in ([(1, 0), (2, 0)], [(1, 1), (2, 2)]):
-        ways = starts._ways(Problem(SymplecticMap(waves, ["0.5", "0.2"])))
+        ways = starts.ways(Problem(SymplecticMap(waves, ["0.5", "0.2"])))
         assert ways == [waves[0], tuple(-k for k in waves[0])]
 
 

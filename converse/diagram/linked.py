@@ -1,0 +1,229 @@
+"""No torus over a range of parameters, by several x*.
+
+Over one x* a tree of few cuts leaves some clusters of prisms.  Each cluster is linked to a region
+of successors of an x* that excludes it cheaply (prover/links.py), perhaps of the same x*.  This
+region moves with the parameters, so a range need not be cut into many.  The x* are compared in the
+middle of the range; nothing rests on the choice."""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+from operator import itemgetter
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+
+from ..model.exact import decimal_text
+from ..model.map import SymplecticMap
+from ..model.problem import Problem
+from ..model.region import halved, skips, with_image
+from ..prover import native, tree
+from ..prover.links import (Cell, Link, Links, Target, clusters, crests, hull_of, linked_tree,
+                            region_around, region_of, slices_of)
+from ..prover.proof import Proof, Tree
+from ..prover.run import prove, ready
+from ..prover.settings import Settings
+from ..prover.shifts import best_shifts
+from ..prover.starts import ways
+
+Point = Tuple[str, ...]                 # x*, as the prover takes it
+
+DEPTH = 60                              # cuts of a proof
+LOOK_CUTS = {1: 16, 2: 24}              # of the tree over the first x*
+RINGS = [Fraction(step, 1000) for step in (16, 32, 64, 128, 256, 8, 4)]    # radians, between x*
+ENOUGH = 1000                           # points: an x* that excludes a cluster so cheaply is good
+NEAR_FACTOR, FAR_FACTOR = 4, 4          # x* that are suggested get so many times more points, and
+                                        # other ones fewer.
+LEVEL_FACTOR = 8
+RANGE_FACTOR = 16                       # points of a range, by those of a try at its ends
+TREE_POINTS, LINK_POINTS = 1000, 20000  # What costs as much as so many points: to set up a tree,
+                                        # and the bounds of a link.
+
+
+class Growth:
+    """Trees that are grown one after the other, and their cost.
+
+    Parameters
+    ----------
+    stop
+        stop() tells whether to end soon.
+
+    Attributes
+    ----------
+    points
+        How many points of orbits were computed, and what else was done, in such points.
+    spent
+        The points of the last tree.
+    stopped
+        Whether a tree was broken off because stop() returned True.
+    """
+
+    def __init__(self, stop: Callable[[], bool]) -> None:
+        self.stop = stop
+        self.points = self.spent = 0
+        self.stopped = False
+
+    def grow(self, problem: Problem, xstar: Point, cuts: int, points: float,
+             stubborn: bool = False, longest: int = native.ORDINARY
+             ) -> Optional[Tuple[native.Grown, native.Search]]:
+        """A tree and its search; None: it takes more points, or a prism is undecided and the
+        search is not stubborn, or it was stopped.
+
+        Parameters
+        ----------
+        problem, xstar
+            What the tree is of, and over which x*.
+        cuts, points, stubborn, longest
+            The most cuts; the most points of its orbits; whether to go on after a prism that cannot
+            be decided; the most points of an orbit.
+        """
+        search = native.Search(native.Task(
+            problem, Settings("loewner", cuts, stubborn=stubborn), xstar, longest))
+        self.stopped = self.stopped or not (search.work(0, self.stop) and search.work(
+            1, self.stop, points=points)) or self.stop()
+        if self.stopped:
+            return None
+        grown = search.view(True, True)
+        self.spent = int(grown.points)
+        self.points += self.spent + TREE_POINTS
+        if grown.cells or grown.counts.undecided and not stubborn:
+            return None
+        return grown, search
+
+
+def linked(growth: Growth, problem: Problem, xstars: Sequence[Point], points: float
+           ) -> Tuple[Optional[Proof], List[Point]]:
+    """A proof, or None, and x*: the first one, and those that exclude clusters in the middle.
+
+    Parameters
+    ----------
+    growth
+        Grows the trees.
+    problem
+        The maps, and the whole torus.
+    xstars
+        The first x*, and others with which clusters are tried first.
+    points
+        The most points of orbits of a cluster's tree in the middle.
+    """
+    before = ready(Proof((Tree(problem, xstars[0]),), Settings("loewner", DEPTH)))
+    problem, used = before.problem, [xstars[0]]
+    targets: List[Target] = []
+    parts: List[Tree] = []
+    if problem.factor is not None or skips(problem, xstars[0]) or not problem.present:
+        return None, used               # prover/run.py, _may_link; a map with V = 0
+    found = growth.grow(problem, xstars[0], LOOK_CUTS[1 if problem.is_flat else 2],
+                        RANGE_FACTOR * points, True)
+    if found is None:
+        return None, used
+    grown, search = found
+    work = _Linking(growth, problem, xstars[0], Fraction(search.constants["B"]), points)
+    for cells in clusters(problem, grown.text):
+        choice = work.best(cells, [*used, *xstars[1:]])
+        if choice is None:
+            return None, used
+        used += [choice.xstar] if choice.xstar not in used else []
+        part = work.part(cells, choice)
+        if part is None:
+            return None, used
+        targets.append(replace(part[0], letter=tree.LETTERS[len(parts)]))
+        parts.append(part[1])
+    text, _ = linked_tree(problem, grown.text, grown.steps, targets)
+    if "U" in text or any(target.letter not in text for target in targets):
+        return None, used
+    proof = prove(resume=replace(before, trees=(replace(before.trees[0], text=text), *parts)),
+                  jobs=1)
+    return proof if proof.no_tori else None, used
+
+
+class _Linking:
+    """The choice of x* for what a tree over the first x* leaves.  largest: B."""
+
+    def __init__(self, growth, problem, first, largest, points):
+        self.growth, self.problem, self.first, self.largest = growth, problem, first, largest
+        self.points = points
+        self.ends = [_End(problem, largest, signs) for signs in product(
+            (-1, 1), repeat=len(problem.parts))]
+
+    def best(self, cells: List[Cell], xstars: Sequence[Point]) -> "Optional[_Choice]":
+        """The x* that excludes the cells at the ends of the range at the least cost; None: no x*
+        was found.  These x* and rings around the first one are tried with ever more points, then
+        rings around the best one."""
+        best: Optional[_Choice] = None
+        boxes = [hull_of(self.problem, [cell for cell in cells if end.has(cell)] or cells)
+                 for end in self.ends]
+
+        def look(xstars, points):
+            nonlocal best
+            for xstar in dict.fromkeys(xstars):
+                if not (best and best.points <= ENOUGH):
+                    best = self._choice(boxes, xstar, best.points if best else points) or best
+
+        def around(step):
+            centre = [Fraction(x) for x in (best.xstar if best else self.first)]
+            return [tuple(decimal_text(a + step * b) for a, b in zip(centre, way))
+                    for way in ways(self.problem)]
+
+        points, others = ENOUGH, [xstar for step in RINGS for xstar in around(step)]
+        while not best and points < NEAR_FACTOR * self.points:
+            points = min(LEVEL_FACTOR * points, NEAR_FACTOR * self.points)
+            look([*xstars, *(others if FAR_FACTOR * points <= self.points else [])], points)
+        for step in RINGS if best else []:
+            look(around(step), points)
+        return best
+
+    def _choice(self, boxes, xstar, points):
+        """The _Choice of an x*; None: it takes more points."""
+        spent, found = 0, []
+        for end, box in zip(self.ends, boxes):
+            self.growth.points += LINK_POINTS * (xstar not in end.links)
+            problem = end.region(box, self.first, xstar)
+            grown = self.growth.grow(problem, xstar, DEPTH, points - spent)
+            if grown is None:
+                return None
+            spent += self.growth.spent
+            found.append((self.growth.spent, problem, grown[0].text))
+        return _Choice(spent, xstar, *max(found, key=itemgetter(0))[1:])
+
+    def part(self, cells: List[Cell], choice: "_Choice") -> Optional[Tuple[Target, Tree]]:
+        """The region of the cells over the x*, and its tree; None: that takes too many points."""
+        problem, xstar = self.problem, choice.xstar
+        shifts = () if not problem.parts else best_shifts(
+            problem.part(choice.end.region), choice.end.amplitude, xstar, choice.text)
+        links = Links(problem, self.largest, self.first, xstar)
+        part = halved(problem.part(region_of(problem, cells, links, shifts), shifts), xstar)
+        self.growth.points += LINK_POINTS * len(links.known)
+        found = self.growth.grow(part, xstar, DEPTH, RANGE_FACTOR * max(self.points, choice.points))
+        return None if found is None else (Target("", links, with_image(part, xstar), shifts),
+                                           Tree(part, xstar, found[0].text))
+
+
+class _Choice(NamedTuple):
+    """An x* that excludes a cluster at the ends: the points that takes; and the problem at the end
+    at which it takes most, with its tree."""
+
+    points: int
+    xstar: Point
+    end: Problem
+    text: str
+
+
+class _End:
+    """The problem at an end of its parameters, and a bound of B there."""
+
+    def __init__(self, problem, largest, signs):
+        self.signs = signs
+        self.problem = replace(problem, map=SymplecticMap(problem.waves, [
+            term.at(signs) for term in problem.terms]), axes=problem.frame, alone=None, comments=(),
+            shifts=())
+        self.largest = min(largest, *crests(self.problem))
+        self.links: Dict[Point, Link] = {}
+
+    def has(self, cell):
+        """Does the cell reach the end?"""
+        return all(i == (0 if sign < 0 else (1 << k) - 1)
+                   for sign, i, k in zip(self.signs, *slices_of(cell)))
+
+    def region(self, box, first, xstar):
+        """The problem in a region over x* to which the box over the first x* is linked."""
+        if xstar not in self.links:
+            self.links[xstar] = Link.between(self.problem, self.largest, first, xstar)
+        return halved(self.problem.part(region_around(box, self.links[xstar])), xstar)
