@@ -31,7 +31,6 @@ LEAST_STEP = {1: 0.003, 2: 0.02}        # radians, by which x* is moved
 BASINS, CHOICES = 3, 6                  # x* that are improved; that are then tried to the end
 HINTS = 3                               # x* of neighbours that are tried first, each alone
 RANGE_FACTOR = 4                        # points of a range over one x*, by those of its middle
-CHEAP = 4                               # A neighbour's x* that costs such a part is good.
 SCALE = 10 ** 4                         # x* has four decimals
 
 
@@ -75,21 +74,19 @@ def exclude(family: SymplecticMap, middle: SymplecticMap, hints: Sequence[Point]
         None if it was stopped.
     """
     search, problem = _Search(Problem.of(middle), points, stop), Problem.of(family)
-    known: Sequence[Point] = ()
     for xstars, alone in search.candidates(hints):
         costs, proof = search.cheapest(xstars), None
-        cost, used = (costs[0][0], [costs[0][1]]) if costs else (0, [])
+        used = [xstar for _, xstar in costs[:1]]
         if costs:
-            proof = search.proof(problem, used[0], RANGE_FACTOR * max(points, cost))
+            proof = search.proof(problem, used[0], RANGE_FACTOR * max(points, costs[0][0]))
         elif not alone:
-            one, used = linked(search, search.problem, [*xstars[:1], *hints], points)
-            used = used if one else []
-        if used and not proof:
-            proof, used = linked(search, problem, [*used, *hints], points)
-        known = known or used
-        if used and (proof or not alone or cost < points / CHEAP):  # A half costs less than a scan.
+            found, used = linked(search, search.problem, [*xstars[:1], *hints], points)
+            used = used if found else []
+        if used:
+            if not proof:
+                proof, used = linked(search, problem, [*used, *hints], points)
             return Outcome(search.points, proof, tuple(used))
-    return None if search.stopped else Outcome(search.points, None, tuple(known))
+    return None if search.stopped else Outcome(search.points, None, ())
 
 
 class _Search(Growth):
