@@ -41,7 +41,7 @@ def test_a_range_over_whose_middle_an_x_is_known_is_halved_without_a_scan(monkey
 
 
 def test_what_one_x_leaves_is_linked_to_others():
-    """No x* alone excludes the middle."""
+    """The first x* leaves four clusters."""
     found = excluded("0.52", "0.53", [("1.7969", "0")], 1 << 16)
     assert found.proof.no_tori and len(found.proof.trees) > 2
     assert len({each.xstar for each in found.proof.trees}) > 2 and found.proof.verify()
