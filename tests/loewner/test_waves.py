@@ -524,8 +524,8 @@ def patch_of(waves, amplitude, parts=(), frame=(1, 0, 0, 1), odd=True, v0=(0, 2)
     terms = tuple(Term(w[:2], Fraction(w[2] if len(w) > 2 else 0), Fraction(p),
                        tuple(map(Fraction, g)))
                   for w, p, *g in zip(waves, amplitude, *parts))
-    return SimpleNamespace(terms=terms, searched=terms, parts=parts, frame=frame, odd=odd or None,
-                           v0=v0, v1=v1, shifts=shifts)
+    return SimpleNamespace(terms=terms, searched=terms, parts=parts, size=2, odd=odd or None,
+                           frame=frame, region=(v0, v1), shifts=shifts)
 
 
 def searched(patch, xstar=None, leaves=20000):
