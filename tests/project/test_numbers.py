@@ -11,6 +11,7 @@ from pathlib import Path
 import chart
 import mpmath
 import pytest
+import reading
 from pages import PAGES, ROOT, columns, golden, is_near, missing, number, rows
 
 from converse import Problem, check, orbits, prove, read_input
@@ -237,6 +238,16 @@ def test_what_a_referee_reads():
     for source in sources:
         for name in re.findall(r"^ *from \.([a-z_]+) import", source, re.MULTILINE):
             assert name in modules
+
+
+def test_what_runs_is_what_a_referee_reads(tmp_path):
+    head, *table = rows("checker.md", "file")
+    found = reading.lists(tmp_path, ROOT)
+    assert {name for name, *_ in table} == set(found) and len(head) == 3
+    for name, modules, lines in table:
+        ran, count = found[name]
+        assert set(re.findall("`([a-z_]+)`", modules)) == ran
+        assert number(lines) == pytest.approx(count, rel=0.05) and count <= 2000
 
 
 def test_the_margins():
