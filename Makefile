@@ -36,15 +36,19 @@ prove: $(VENV)/installed
 	@echo
 	$(VENV)/bin/converse --method loewner inputs/trig274.in
 
+# Asserts that explain themselves take as long to compile as a tenth of all tests takes to run.  So they
+# are plain, and the tests that fail run once more with them.
+PYTEST = $(VENV)/bin/pytest
+AGAIN = { $(PYTEST) -q --last-failed --last-failed-no-failures none tests; exit 1; }
+
 # The tests except the slow ones, a share of every room (tests/conftest.py), with a third of the random
-# cases.  The first run also downloads the test tools.  Asserts that explain themselves take as long to
-# compile as a fifth of the tests takes to run, so those that fail run once more with them.
+# cases.  The first run also downloads the test tools.
+check: export CONVERSE_TORTURE = 1/3
 check: $(VENV)/with-test
-	CONVERSE_TORTURE=1/3 $(VENV)/bin/pytest $(TWO) -q -m 'not slow' --assert=plain tests || { \
-	    CONVERSE_TORTURE=1/3 $(VENV)/bin/pytest -q --last-failed --last-failed-no-failures none tests; exit 1; }
+	$(PYTEST) $(TWO) -q -m 'not slow' --assert=plain tests || $(AGAIN)
 
 test: $(VENV)/with-test
-	$(VENV)/bin/pytest $(TWO) tests
+	$(PYTEST) $(TWO) --assert=plain tests || $(AGAIN)
 
 PYTHON_CODE = converse docs experiments formal golden_outputs setup.py tests
 C_CODE = $(wildcard csrc/*.h csrc/*/*.[ch] csrc/*/*.inc tests/kernels/*.[ch])

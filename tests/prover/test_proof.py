@@ -659,7 +659,7 @@ def test_a_range_with_circles_is_given_up_within_seconds(monkeypatch, tmp_path):
     assert went_on.ended in ("time", "hopeless as seen") and went_on.seconds > proof.seconds
 
 
-@pytest.mark.parametrize("seconds", [0.001, 0.5])
+@pytest.mark.parametrize("seconds", [0.001, pytest.param(0.5, marks=pytest.mark.slow)])
 def test_where_a_search_is_given_up_does_not_depend_on_when_it_is_looked_at(monkeypatch, seconds):
     monkeypatch.setattr(run, "MANY_LEAVES", 100)
     monkeypatch.setattr(native, "LOOK_SECONDS", seconds)

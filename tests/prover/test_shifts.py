@@ -18,7 +18,7 @@ from converse.prover.run import ready
 from converse.storage import files
 
 import kernels
-from truth import rng_for
+from truth import TORTURE, rng_for
 
 HERE, THERE = ("0.858", "0.858"), ("0.842", "0.85")
 B = Fraction("2.8")
@@ -134,7 +134,7 @@ def test_links_lead_into_regions_that_move(mine, theirs):
     """To the edge: an end that is nearer by any amount is not enough."""
     problem = PATCH.part((PATCH.v0, PATCH.v1), mine)
     rng, links = rng_for("shifted links %s %s" % (mine, theirs)), Links(problem, B, HERE, THERE)
-    for _ in range(10):
+    for _ in range(10 * TORTURE):
         cell = random_cell(rng, 2)
         link = links.of(cell)
         seen = [[x - sum(pair[i] * t for pair, t in zip(theirs, ts)) for i, x in enumerate(v)]

@@ -31,7 +31,8 @@ def test_circles_are_found_beyond_the_gaps(K1):
     assert x == pytest.approx(torus.x([1.0 + 40 * np.pi * w])[0], abs=1e-6)
 
 
-@pytest.mark.parametrize("K1", ["0.30", "0.515", "0.55"])
+@pytest.mark.parametrize("K1", ["0.30", *(
+    pytest.param(K1, marks=pytest.mark.slow) for K1 in ("0.515", "0.55"))])
 def test_where_absence_is_proved_nothing_is_found(K1):
     with pytest.raises(NotFound, match="at K1 = %g no orbit is seen that is regular" % float(K1)):
         find(two_harmonics(K1))
