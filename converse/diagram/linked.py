@@ -2,8 +2,8 @@
 
 Over one x* a tree of few cuts leaves some clusters of prisms.  Each cluster is linked to a region
 of successors of an x* that excludes it cheaply (prover/links.py), perhaps of the same x*.  This
-region moves with the parameters, so a range need not be cut into many.  The x* are compared in the
-middle of the range; nothing rests on the choice."""
+region moves with the parameters, so a range need not be cut into many.  The x* are compared at the
+ends of the range; nothing rests on the choice."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -30,9 +30,8 @@ DEPTH = 60                              # cuts of a proof
 LOOK_CUTS = {1: 16, 2: 24}              # of the tree over the first x*
 RINGS = [Fraction(step, 1000) for step in (16, 32, 64, 128, 256, 8, 4)]    # radians, between x*
 ENOUGH = 1000                           # points: an x* that excludes a cluster so cheaply is good
-NEAR_FACTOR, FAR_FACTOR = 4, 4          # x* that are suggested get so many times more points, and
-                                        # other ones fewer.
-LEVEL_FACTOR = 8
+LEVEL_FACTOR = 8                        # x* are tried with so many times more points each time,
+FAR_FACTOR = {1: 4, 2: 8}               # those that are not suggested with so many times fewer.
 RANGE_FACTOR = 16                       # points of a range, by those of a try at its ends
 TREE_POINTS, LINK_POINTS = 1000, 20000  # What costs as much as so many points: to set up a tree,
                                         # and the bounds of a link.
@@ -91,7 +90,7 @@ class Growth:
 
 def linked(growth: Growth, problem: Problem, xstars: Sequence[Point], points: float
            ) -> Tuple[Optional[Proof], List[Point]]:
-    """A proof, or None, and x*: the first one, and those that exclude clusters in the middle.
+    """A proof, or None, and x*: the first one, and those that exclude clusters.
 
     Parameters
     ----------
@@ -102,7 +101,7 @@ def linked(growth: Growth, problem: Problem, xstars: Sequence[Point], points: fl
     xstars
         The first x*, and others with which clusters are tried first.
     points
-        The most points of orbits of a cluster's tree in the middle.
+        The most points of orbits of a cluster's tree at an end of the range.
     """
     before = ready(Proof((Tree(problem, xstars[0]),), Settings("loewner", DEPTH)))
     problem, used = before.problem, [xstars[0]]
@@ -139,7 +138,7 @@ class _Linking:
 
     def __init__(self, growth, problem, first, largest, points):
         self.growth, self.problem, self.first, self.largest = growth, problem, first, largest
-        self.points = points
+        self.points, self.far = points, FAR_FACTOR[1 if problem.is_flat else 2]
         self.ends = [_End(problem, largest, signs) for signs in product(
             (-1, 1), repeat=len(problem.parts))]
 
@@ -162,10 +161,11 @@ class _Linking:
             return [tuple(decimal_text(a + step * b) for a, b in zip(centre, way))
                     for way in ways(self.problem)]
 
-        points, others = ENOUGH, [xstar for step in RINGS for xstar in around(step)]
-        while not best and points < NEAR_FACTOR * self.points:
-            points = min(LEVEL_FACTOR * points, NEAR_FACTOR * self.points)
-            look([*xstars, *(others if FAR_FACTOR * points <= self.points else [])], points)
+        points, most = ENOUGH, self.points * len(self.ends)
+        others = [xstar for step in RINGS for xstar in around(step)]
+        while not best and points < most:
+            points = min(LEVEL_FACTOR * points, most)
+            look([*xstars, *(others if self.far * points <= most else [])], points)
         for step in RINGS if best else []:
             look(around(step), points)
         return best
