@@ -160,8 +160,10 @@ class _Search(Growth):
         count, axes = SCAN[self.axes], self.axes
         chosen = ready(Proof((Tree(self.problem),), Settings("loewner"))).xstar
         places = [self._place(tuple(map(Fraction, chosen)))]    # best where all are equal
+        even = all(term.phase % 1 == Fraction(1, 2) for term in self.problem.terms)
         places += [tuple(round(2 * math.pi * SCALE * (i + 0.5) / count) for i in at)
-                   for at in itertools.product(range(count), repeat=axes)]
+                   for at in itertools.product(range(count), repeat=axes)
+                   if not even or at <= tuple(count - 1 - i for i in at)]   # x* does as -x* does
         scores = {place: self._left(place, SCAN_CUTS[axes]) for place in dict.fromkeys(places)}
         return sorted(scores, key=scores.__getitem__)[:BASINS]
 

@@ -7,6 +7,7 @@ import pytest
 from converse import FourierMap, diagram
 from converse.diagram import Diagram, line, none, some
 from converse.diagram.value import Existence
+from converse.model.problem import Problem
 
 
 def cosines(**ranges):
@@ -52,6 +53,19 @@ def test_a_circle_is_not_linked_away():
     """One is proved at K1 = 0.5088."""
     found = excluded("0.508", "0.509", [("1.7969", "0"), ("1.7809", "0"), ("1.8449", "0")])
     assert found.proof is None
+
+
+def test_half_a_turn_is_scanned_where_v_is_even(monkeypatch):
+    asked = []
+    monkeypatch.setattr(none._Search, "_left", lambda self, place, cuts: (asked.append(place), 0))
+    for harmonics, part in (({1: 1, (2, "+cos"): 1}, 1), ({(1, "+cos"): 1, (2, "+cos"): 1}, 2)):
+        search = none._Search(Problem.of(FourierMap(harmonics)), 1, bool)
+        asked.clear()
+        search._basins()
+        scanned = sorted(place[0] / none.SCALE for place in asked)
+        assert len(scanned) - none.SCAN[1] // part in (0, 1)    # and the prover's choice
+        assert all(any(abs(x - z % 6.2832) < 0.06 for y in scanned for z in ((y, -y) if part == 2
+                   else (y,))) for x in (0.1, 1, 2, 3, 4, 5, 6))
 
 
 @pytest.mark.slow
