@@ -147,7 +147,7 @@ class Shared:
         """The first cells on which nobody works.  The parts that wait are divided before, until
         there are as many as tasks are wanted, if possible: the last cell of a part is the largest,
         since it was cut least."""
-        busy = {id(task.key) for task in self.pool.running.values()}
+        busy = {id(cells) for _, cells, *_ in self.pool.running.values()}
         waiting = [part for part in self.known if part.cells and id(part.cells) not in busy]
         while waiting and len(waiting) < self.pool.size - len(busy):
             part = max(waiting, key=lambda part: len(part.cells))

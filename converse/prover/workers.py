@@ -12,8 +12,6 @@ import platform
 import threading
 import time
 import warnings
-from dataclasses import dataclass, replace
-from typing import Any, Callable
 
 from ..model.exact import whole_number
 from ..storage.files import ConverseError, WorkersGone
@@ -62,14 +60,6 @@ def check_options(jobs, executor):
         raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
 
 
-@dataclass(frozen=True)
-class _Task:
-    key: Any                            # of who gave it, to recognise the result
-    call: Callable
-    arguments: tuple
-    attempts: int = ATTEMPTS            # that are left, this one included
-
-
 class WorkerPool(Resource):
     """The workers of an executor or, where that is None, threads of this process.
 
@@ -83,7 +73,9 @@ class WorkerPool(Resource):
         self.executor = executor or concurrent.futures.ThreadPoolExecutor(jobs or count_workers())
         self.client = getattr(executor, "_client", None)        # of Dask
         self.due, self.cores, self.waiting = 0.0, 0, ""         # of _ask
-        self.running, self.stop = {}, threading.Event()         # running: future -> _Task
+        # By future the attempts that are left at its task, this one included, and (key, call,
+        # *arguments): by the key who gave it recognises the result.
+        self.running, self.stop = {}, threading.Event()
 
     def acquire(self):
         """The threads begin with the first task."""
@@ -109,7 +101,7 @@ class WorkerPool(Resource):
         while task or self.running:
             size = self.size
             while task and len(self.running) <= size:           # one task waits for a worker
-                self._submit(_Task(task[0], task[1], task[2:]))
+                self._submit(ATTEMPTS, *task)
                 task = next_task()
             for key, result in self._take():
                 take(key, result)
@@ -118,15 +110,13 @@ class WorkerPool(Resource):
                 break
             task = task or next_task()
 
-    def _submit(self, task):
+    def _submit(self, attempts, key, *task):
         """WorkersGone: nobody takes the task; MemoryError: memory lacks for another thread."""
-        call, arguments = task.call, (*task.arguments, self.stop.is_set)
-        if not self.here:
-            call, arguments = eval, (ANSWER, {"release": __version__, "task": pickle.dumps(
-                (task.call, task.arguments))})
+        given = (*task, self.stop.is_set) if self.here else (
+            eval, ANSWER, {"release": __version__, "task": pickle.dumps(task)})
         try:
             with postponed():
-                self.running[self.executor.submit(call, *arguments)] = task
+                self.running[self.executor.submit(*given)] = attempts, key, *task
         except Exception as error:
             if not self.here:
                 raise self._gone(error) from None
@@ -143,15 +133,15 @@ class WorkerPool(Resource):
             done = concurrent.futures.wait(self.running, LOOK_SECONDS,
                                            concurrent.futures.FIRST_COMPLETED)[0]
         for future in done:
-            task = self.running.pop(future)
+            attempts, key, *task = self.running.pop(future)
             try:
                 with postponed():
                     result = future.result()
             except Exception as error:
-                self._failed(error, task)
-                self._submit(replace(task, attempts=task.attempts - 1))
+                self._failed(error, attempts)
+                self._submit(attempts - 1, key, *task)
             else:
-                yield task.key, result
+                yield key, result
 
     # ---- workers
 
@@ -181,7 +171,7 @@ class WorkerPool(Resource):
         return WorkersGone("the workers are gone (%s)" % error if self.alive
                            else "the Dask scheduler is gone")
 
-    def _failed(self, error, task):
+    def _failed(self, error, attempts):
         """Raises what a failure of a task means; returns if the task may be tried again."""
         if self.here or isinstance(error, (ConverseError, MemoryError)):
             raise error
@@ -190,7 +180,7 @@ class WorkerPool(Resource):
         if isinstance(error, (ImportError, AttributeError)):
             raise WorkersGone("a worker has no converse %s (%s); install converse-kam %s where the "
                               "workers run" % (__version__, words, __version__))
-        if task.attempts <= 1:
+        if attempts <= 1:
             raise WorkersGone("the workers keep failing (%s: %s)" % (type(error).__name__, words))
 
     def _ask(self):
@@ -207,14 +197,14 @@ class WorkerPool(Resource):
 
 
 def answer(release, task):
-    """The result of a task, (function, arguments) by pickle, of another process that has a release
+    """The result of a task, (function, *arguments) by pickle, of another process that has a release
     of this program.  A worker calls it; before, neither it nor a scheduler must import anything.
     WorkersGone: the releases differ."""
     if release != __version__:
         raise WorkersGone("the worker on %s needs converse %s and has %s; install converse-kam %s "
                           "where the workers run"
                           % (platform.node(), release, __version__, release))
-    call, arguments = pickle.loads(task)
+    call, *arguments = pickle.loads(task)
     return call(*arguments)
 
 
