@@ -216,7 +216,7 @@ def clusters(problem: Problem, text: str) -> List[List[Cell]]:
     whole = [not any(cuts[axis] for _, cuts in cells) for axis in tree.ANGLES]
     gap = LEAST_GAP
     while gap < 1:                      # An axis that is not cut is one box long.
-        found = _joined(cells, [1 if uncut else 2 * h / gap for uncut, h in zip(
+        found = _joined(cells, [Fraction(1) if uncut else 2 * h / gap for uncut, h in zip(
             whole, problem.half[-problem.size:])])
         if len(found) <= MOST_CLUSTERS:
             return found
