@@ -9,7 +9,7 @@ from cffi import FFI
 SOURCES = ["arith/apm", "arith/special", "arith/guard", "arith/machine",
            "thesis/start", "thesis/rigorous", "thesis/double", "thesis/method",
            "loewner/problem", "loewner/start", "loewner/score", "loewner/method",
-           "loewner/engine", "loewner/engine_avx2", "loewner/engine_avx512",
+           *("loewner/engine_%d_%d" % (lanes, n) for lanes in (2, 4, 8) for n in (1, 2, 3)),
            "model/patch", "model/region", "model/stationary", "model/torus",
            "search/setup", "search/tree", "search/threads",
            "orbits/potential", "orbits/band", "orbits/relax", "orbits/average"]

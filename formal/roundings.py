@@ -17,6 +17,7 @@ products lose that are below 2^-1022.
 
 import sys
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -26,7 +27,7 @@ from polynomial import Polynomial, symbol  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 UNIT = Fraction(1, 2 ** 53)
-COLUMNS, MOST_WAVES = 5, 16
+MOST_WAVES, PARAMETERS = 16, 3
 ZERO = Polynomial()
 
 
@@ -114,11 +115,23 @@ def squared(polynomial):
     return result
 
 
+def convex(polynomial):
+    """With 1 for weights w0, w1, ... that are not negative and whose sum is 1 at most."""
+    result, alone = ZERO, {}
+    for key, x in polynomial.terms.items():
+        others = tuple(name for name in key if name[0] != "w")
+        if others or key == ():
+            result = result + Polynomial({others: x})
+        else:
+            alone[key] = alone.get(key, 0) + x
+    return result + max(alone.values(), default=Fraction(0))
+
+
 def evened(polynomial):
-    """With (n0^2 + n1^2)/2 for n0 n1."""
+    """With (n0^2 + n1^2)/2 for n0 n1, and so on."""
     result = ZERO
     for key, x in polynomial.terms.items():
-        pair = [name for name in key if name in ("n0", "n1")]
+        pair = [name for name in key if name in ("n0", "n1", "n2")]
         others = tuple(name for name in key if name not in pair)
         for name in pair:
             result = result + Polynomial({tuple(sorted(others + (name, name))): x / 2})
@@ -171,44 +184,50 @@ class Model:
     """A point q of an orbit, the one before, and the waves: so many with any k, or those of the
     thesis with theirs; what each function of the text sees."""
 
-    def __init__(self, read, waves=None, columns=COLUMNS):
+    def __init__(self, read, waves=None, angles=2, parameters=PARAMETERS):
         Rounded.known.clear()
-        self.columns, self.pairs = columns, columns * (columns + 1) // 2
+        columns = angles + parameters
+        self.columns, self.pairs, self.n = columns, columns * (columns + 1) // 2, angles
+        self.entries = angles * (angles + 1) // 2
         thesis = waves is None
         self.texts = {name: read(name) for name in
-                      ("arith/sine.h", "arith/turns.h", "loewner/prism.h", "loewner/orbit.c",
-                       "loewner/bound.c", "loewner/problem.c", "loewner/waves.h")}
-        self.first, self.slots = 2, 5 if thesis else 2 + waves
+                      ("arith/sine.h", "arith/sym.h", "arith/turns.h", "loewner/prism.h",
+                       "loewner/orbit.c", "loewner/bound.c", "loewner/problem.c",
+                       "loewner/waves.h")}
+        self.first, self.slots = angles, angles + (3 if thesis else waves)
         present = range(self.first, self.slots)
-        self.part = [[exact("g%d_%d" % (i, k)) if k > 1 and i in present else 0.0
+        self.part = [[exact("g%d_%d" % (i, k)) if k >= angles and i in present else 0.0
                       for k in range(columns)] for i in range(self.slots)]
         h = [total(map(rounded, row)) for row in self.part]
         p = [Rounded(symbol("p%d" % i), symbol("p%d" % i) * (3 * UNIT)) if i in present else 0.0
              for i in range(self.slots)]        # set_amplitudes
-        k = [[1.0, 0.0], [0.0, 1.0]] + (
+        k = [[float(i == j) for j in range(angles)] for i in range(angles)] + (
             [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] if thesis else
-            [[exact("k%d_%d" % (i, j)) for j in range(2)] for i in range(2, self.slots)])
+            [[exact("k%d_%d" % (i, j)) for j in range(angles)] for i in present])
         problem = SimpleNamespace(
             present=[i in present for i in range(self.slots)], waves=self.slots, k=k,
             moves=[[True] * columns] * self.slots, phase=[self.phase(i) for i in range(self.slots)],
-            square_k=[Rounded((x.size + y.size) * (x.size + y.size))
-                      for x, y in (map(rounded, row) for row in k)],
+            square_k=[Rounded(total(row).size * total(row).size)
+                      for row in (list(map(rounded, row)) for row in k)],
             columns=columns, most_k=2.0,
-            axes=[[exact("R%d_%d" % (i, j)) for j in range(2)] for i in range(2)],
-            onto=[[exact("R%d.k%d" % (j, i)) for i in range(self.slots)] for j in range(2)],
-            along=[[self.quotient(symbol("R%d.k%d" % (j, i))) for j in range(2)]
-                   for i in range(self.slots)],
-            turn=[self.quotient(1) for _ in range(4)])
+            axes=[[self.quotient(symbol("O%d_%d" % (i, j))) for j in range(angles)]
+                  for i in range(angles)],
+            onto=[[self.quotient(symbol("O%d.k%d" % (j, i))) for j in range(angles)]
+                  for i in range(self.slots)],
+            turn=[[self.quotient(symbol("w%d" % a) if a == b else 1)
+                   for a in range(angles) for b in range(a, angles)]
+                  for _ in range(self.entries)])
         self.w = SimpleNamespace(
             problem=problem, p=p, h=h, part=self.part, err_amp=[0.0] * self.slots,
             size=[Rounded(rounded(x).size + y.size) for x, y in zip(p, h)],
-            residual=[exact("residual0"), exact("residual1")])
+            residual=[exact("residual%d" % i) for i in range(angles)])
         self.names = {
-            "SLOTS": self.slots, "FIRST": self.first, "COLUMNS": columns,
+            "SLOTS": self.slots, "FIRST": self.first, "COLUMNS": columns, "N": angles,
+            "ENTRIES": self.entries, "ANGLES": 3, "MOST_ENTRIES": 6, "sym_at": self.sym_at,
             "PAIRS": self.pairs, "mag": lambda x: x, "fabs": lambda x: x, "every": lambda x: x,
             "memset": clear, "double_sincos": self.double_sincos, "larger": self.larger,
             "dot_k": self.dot_k, "none": lambda: 0, "wave_at": self.wave_at}
-        for name in ("waves_of", "k_of", "grain_of", "dot_abs_k", "sum_abs_k", "propagate",
+        for name in ("dot", "waves_of", "k_of", "grain_of", "sum_abs_k", "propagate",
                      "propagate_err"):
             self.names[name] = self.function(name)
         self.names["add_moves"] = function(self.texts["loewner/prism.h"],
@@ -226,9 +245,17 @@ class Model:
         return function(self.texts["loewner/waves.h"], name).bound(
             self.names if names is None else names)
 
+    @staticmethod
+    def sym_at(n, i, j):
+        """As the text has it."""
+        i, j = min(i, j), max(i, j)
+        return i * (2 * n - i - 1) // 2 + j
+
     def quotient(self, size):
-        """Of integers, by |k|^2: off by u.  Those of the axes are 1 at most."""
-        return Rounded(size, Polynomial.of(size) * UNIT)
+        """Of integers, by lengths: off by 4 u (set_axes).  As the axes have length 1 and are
+        orthogonal, those of `turn` are 1 at most, and those of the diagonal have a sum of 1 at
+        most."""
+        return Rounded(size, Polynomial.of(size) * (4 * UNIT))
 
     def phase(self, i):
         """near() puts it 8 u off, and it may be 10^-40 off before."""
@@ -237,11 +264,12 @@ class Model:
     def point(self, lin, quad):
         """A point as doubles have it.  Its rad is at least what lin and quad add up to."""
         q = SimpleNamespace(
-            push=[0, 0],
-            lin=[[exact("%s%d_%d" % (lin, i, k)) for k in range(self.columns)]
-                    for i in range(2)],
-            quad=[[exact("%s%d_%d" % (quad, i, k)) for k in range(self.pairs)] for i in range(2)],
-            sine=[None] * self.slots, cosine=[None] * self.slots, beta=[None] * 3)
+            push=[0] * self.n,
+            lin=[[exact("%s%d_%d" % (lin, i, k)) for i in range(self.n)]
+                 for k in range(self.columns)],
+            quad=[[exact("%s%d_%d" % (quad, i, k)) for i in range(self.n)]
+                  for k in range(self.pairs)],
+            sine=[None] * self.slots, cosine=[None] * self.slots, beta=[None] * self.entries)
         along = [[[exact("%s%d_%d" % (name, i, k)) for k in range(n)] for i in range(self.slots)]
                  for name, n in ((lin, self.columns), (quad, self.pairs))]
         q.lin_bound, q.quad_bound = [[*map(total, rows)] for rows in along]
@@ -251,11 +279,11 @@ class Model:
                           * self.slip) for i in range(self.slots)]
         return q
 
-    def dot_k(self, _, wave, x, y):
+    def dot_k(self, _, wave, x):
         """k.x of L and T: a symbol of its own, off by the slip that roundings make of it.
         A coordinate itself, and what is neither L nor T, is what the text makes of it."""
-        text = self.function("dot_k")(self.w, wave, x, y)
-        first = next(iter(x.size.terms))[0]
+        text = self.function("dot_k")(self.w, wave, x)
+        first = next(iter(x[0].size.terms))[0]
         if "_" not in first:
             return text
         name = "%s%d_%s" % (first[0], wave, first.split("_")[1])
@@ -268,9 +296,9 @@ class Model:
         """How many times what k.L and k.T lose bound_err_dot has."""
         dot_k, q = self.function("dot_k"), self.point("L", "T")
         self.function("bound_err_dot")(self.w, q)
-        found = (left("err_dot", sum((dot_k(self.w, j, x, y).off for rows in (q.lin, q.quad)
-                                      for x, y in zip(*rows)), ZERO), q.err_dot[j].least())
-                 for j in range(2, self.slots))
+        found = (left("err_dot", sum((dot_k(self.w, j, x).off for rows in (q.lin, q.quad)
+                                      for x in rows), ZERO), q.err_dot[j].least())
+                 for j in range(self.first, self.slots))
         return min(filter(None, found))         # along k = (1, 0) nothing is lost
 
     def wave_at(self, _, q, wave):
@@ -311,12 +339,12 @@ def err_beta(model):
 
 
 def turned(model):
-    """beta along the axes is off by less than 15/16 of the 2 err_beta of `step`, which leaves more
-    than u |beta| for the difference from the inverse."""
-    made = [None] * 3
+    """beta along the axes, and its difference from the inverse, is off by less than the 2 err_beta
+    of `step`."""
+    made = [None] * model.entries
     model.function("along_axes")(model.w, made, model.q.beta)
     there = model.q.err_beta.least() * 2
-    return min(left("axes", x.off + (x.size + x.off) * UNIT, there) for x in made)
+    return min(left("axes", convex(x.off + (x.size + x.off) * UNIT), there) for x in made)
 
 
 def propagated(model):
@@ -326,13 +354,14 @@ def propagated(model):
     these lose bending_err has.  A
     sum is known: 2L - o, which is the next column less what the waves add."""
     w, q, o = model.w, model.q, model.o
-    for i in range(2):
+    for i in range(model.n):
         for rows, before in ((q.lin, o.lin), (q.quad, o.quad)):
-            for x, y in zip(rows[i], before[i]):
+            for x, y in ((row[i], other[i]) for row, other in zip(rows, before)):
                 less = symbol("less %s" % next(iter(x.size.terms))[0])
                 Rounded.known[_sum(2.0 * x, y)] = less
-    lin, quad = (SimpleNamespace(lin=[[None] * model.columns for _ in range(2)],
-                                   quad=[[None] * model.pairs for _ in range(2)]) for _ in range(2))
+    lin, quad = (SimpleNamespace(lin=[[None] * model.n for _ in range(model.columns)],
+                                 quad=[[None] * model.n for _ in range(model.pairs)])
+                 for _ in range(2))
     model.names["propagate"](w, lin, q, o)
     model.slipping = "T"
     model.names["propagate"](w, quad, q, o)
@@ -341,11 +370,11 @@ def propagated(model):
     err = [model.names["propagate_err"](w, q, i) if i >= model.first else 0.0
            for i in range(model.slots)]
     worst = {"lin": [], "quad": []}
-    for i in range(2):
+    for i in range(model.n):
         lost, made = [], []
-        for row in (lin.lin[i], quad.quad[i]):
+        for rows in (lin.lin, quad.quad):
             lost.append(ZERO)
-            for x in row:
+            for x in (row[i] for row in rows):
                 off = x.off
                 for key in [key for key in x.size.terms if key[0].startswith("less ")]:
                     # what is less is at most what is made, and what the waves add
@@ -376,7 +405,8 @@ def multipliers(model):
     names = {**model.names, "square": lambda x: x * x, "w": w, "q": q, "tiny": 0.0,
              "before": exact("before"), "after": exact("after")}
     names["gradient"] = model.function("gradient", names)
-    omega = [x * x for x in (model.dot_k(w, i, *q.n) for i in range(2))]
+    names["sym_times"] = function(model.texts["arith/sym.h"], "sym_times").bound(names)
+    omega = [x * x for x in (model.dot_k(w, i, q.n) for i in range(2))]
     names["weights"] = model.function("weights_of")(w, omega, q.mu)
     there = execute(function(text, "sum_left").initial("left"), names).least()
     worst = []
@@ -413,19 +443,21 @@ def widen(model):
             ("lin_bound", "quad_bound", "nonlin_bound", "rad", "err_dot", "p", "h", "err_amp",
              "size", "weight",
              "cosine", "sine")}
-    pair = {name: Kept(name, 2) for name in ("rem", "force")}
+    angles, entries = model.n, model.entries
+    pair = {name: Kept(name, angles) for name in ("rem", "force")}
     q = SimpleNamespace(lin=model.q.lin, quad=model.q.quad, **wave, **pair,
-                        err_beta=exact("err_beta"), d=Kept("d", 3),
+                        err_beta=exact("err_beta"), d=Kept("d", entries),
                         rad_max=None)
     w = SimpleNamespace(problem=model.w.problem, residual=model.w.residual, **wave)
-    o = SimpleNamespace(rad=Kept("before", model.slots), force=Kept("push", 2),
-                        rem=Kept("last", 2))
+    o = SimpleNamespace(rad=Kept("before", model.slots), force=Kept("push", angles),
+                        rem=Kept("last", angles))
     slips, model.slipping = model.slipping, ""      # see propagated
     function(text, "measure").bound(names)(w, q)
     model.slipping = slips
     function(text, "bound_displacement").bound(names)(w, q)
-    following = SimpleNamespace(rem=Kept("rem", 2), lin_bound=q.lin_bound, quad_bound=q.quad_bound)
-    function(text, "set_force").bound(names)(w, following, q, o, Kept("inverse", 3),
+    following = SimpleNamespace(rem=Kept("rem", angles), lin_bound=q.lin_bound,
+                                quad_bound=q.quad_bound)
+    function(text, "set_force").bound(names)(w, following, q, o, Kept("inverse", entries),
                                              exact("rounded"), 0)
     function(text, "set_remainder").bound(names)(following, q)
     made = [kept.made for kept in
@@ -444,8 +476,8 @@ def widen(model):
 
 def at_once(model):
     """The roundings of loewner_at_once are less than the margin it asks for, for all parameters and
-    at their end.  near() puts amplitudes 8 u off, and straighten rounds them by two more; and
-    |k.n|^2 <= (|k0| + |k1|)^2 |n|^2, also of sizes."""
+    at their end.  near() puts amplitudes 8 u off; and |k.n|^2 <= (|k0| + |k1| + ...)^2 |n|^2, also
+    of sizes."""
     text = model.texts["loewner/problem.c"]
 
     def off_by(x, units):
@@ -453,27 +485,26 @@ def at_once(model):
 
     problem, w = model.w.problem, model.w
     given = SimpleNamespace(
-        waves=model.slots, k=problem.k, phase=problem.phase, square_k=problem.square_k,
-        n_parameters=3,
-        seen=[[0.0] * 2] * 2, err_amplitude=w.err_amp, amplitude=[off_by(x, 10) for x in w.p],
-        part=[[off_by(exact("g%d_%d" % (i, m)), 10) if i >= model.first else 0.0 for m in range(3)]
+        waves=model.slots, angles=model.n, k=problem.k, phase=problem.phase,
+        square_k=problem.square_k, n_parameters=3,
+        err_amplitude=w.err_amp, amplitude=[off_by(x, 8) for x in w.p],
+        part=[[off_by(exact("g%d_%d" % (i, m)), 8) if i >= model.first else 0.0 for m in range(3)]
               for i in range(model.slots)])
     worst = []
     for at_end in (0, 1):
         model.angles = {}
 
-        def noted(name, value):
-            return [exact("x%d" % i) for i in range(2)] if name == "x" else value
+        def eigenvector(angles, _, n):
+            n[:angles] = [exact("n%d" % i) for i in range(angles)]
 
-        def eigenvector(_, n):
-            n[:] = exact("n0"), exact("n1")
-
-        names = {**model.names, "square": lambda x: x * x, "least_eigenvector": eigenvector,
-                 "SLOTS": model.slots, "w": given, "at": [0.0] * 2, "at_end": at_end,
+        names = {**model.names, "square": lambda x: x * x, "sym_least_eigenvector": eigenvector,
+                 "SLOTS": model.slots, "w": given,
+                 "x": [exact("x%d" % i) for i in range(model.n)], "at_end": at_end,
                  "size_of": function(text, "size_of").bound(model.names)}
         *rest, last = function(text, "loewner_at_once").statements
-        run(rest, names, noted)
-        length = symbol("n0") * symbol("n0") + symbol("n1") * symbol("n1")
+        run(rest, names)
+        n = [symbol("n%d" % i) for i in range(model.n)]
+        length = sum((x * x for x in n), ZERO)
         needed = names["sum"].off + length * (UNIT * 4 / 3)     # 4/3 is a double, too
         try:
             margin = last.expr.right.left.right                 # mass >= 1 && sum + margin < 0
@@ -483,13 +514,13 @@ def at_once(model):
     return min(worst)
 
 
-def proved(read, columns=COLUMNS):
+def proved(read, parameters=PARAMETERS):
     """The margins of section 8 of docs/proofs/argument.md that the text of csrc proves, read(file)
-    of it: how many times what is needed there is, of the thesis's waves and of one, of three, and
-    of as many as may be."""
+    of it: how many times what is needed there is, of the thesis's waves, and of one, of three, and
+    of as many as may be of one, two and three angles."""
     result = {}
-    for waves in (None, 1, 3, MOST_WAVES):
-        model = Model(read, waves, columns if waves != MOST_WAVES else 2)
+    for waves, angles in [(None, 2), *product((1, 3, MOST_WAVES), (1, 2, 3))]:
+        model = Model(read, waves, angles, parameters if waves != MOST_WAVES else 0)
         found = {"err_beta": err_beta(model), "axes": turned(model), **propagated(model),
                  "sines in wave_remainder": sines(model), "err_dot": model.slip,
                  "widen": widen(model)}

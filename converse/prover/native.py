@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import List, Optional, Tuple
 
 from ..model.exact import decimal_text
-from ..model.problem import Problem, rows
+from ..model.map import HIGHEST
+from ..model.problem import Problem, bezout, rows
 from ..storage.files import ConverseError
 from ..version import __version__
 from .settings import Settings
@@ -71,6 +72,7 @@ def check(code):
 
 TOO_LONG = lib.CV_REASON_TOO_LONG       # index of Counts.reasons
 MANY = 2 ** 30                      # No search has as many leaves.
+SWAPPED = str.maketrans("01", "10")
 MAXIMA = "most_cuts", "max_steps", "max_NTsteps"    # of Counts: all other fields are sums
 
 
@@ -188,24 +190,66 @@ def native_text(text, owners):
     return owners[-1]
 
 
-def native_problem(problem, owners):
+@dataclass(frozen=True)
+class OneAngle:
+    """The only angle q.y that the waves of a search depend on, where x_1 has q.x_1 = c v_i.
+
+    With |q|^2 times their amplitudes the waves k = m q are waves m of it; see section 2 of
+    docs/proofs/argument.md."""
+
+    q: Tuple[int, int]
+    i: int
+    c: int
+
+    @classmethod
+    def of(cls, problem):
+        """None: there is none."""
+        k = [term.k for term in problem.searched if term.most]
+        if problem.size != 2 or not k or any(a * d != b * c for a, b in k for c, d in k[:1]):
+            return None
+        q = tuple(x // math.gcd(*k[0]) for x in k[0])
+        felt = [(i, c) for i in range(2)
+                for c in [sum(a * b for a, b in zip(q, problem.frame[i::2]))] if c]
+        return cls(q, *felt[0]) if len(felt) == 1 and abs(felt[0][1]) <= HIGHEST else None
+
+    def along(self, x):
+        """q.x of two decimals, as text."""
+        return decimal_text(sum(a * Fraction(b) for a, b in zip(self.q, x)))
+
+    def point(self, s):
+        """Two decimals x with q.x = s."""
+        return tuple(str(Decimal(a) * Decimal(s))
+                     for a in ((1, 1) if abs(sum(self.q)) == 1 == max(self.q) else bezout(*self.q)))
+
+
+def native_problem(problem, owners, one=None):
     """A problem as the C core takes it, which lives as long as owners; the waves that the search
-    does not need are nothing in it."""
+    does not need are nothing in it.  one: the OneAngle that is all it has."""
     def text(x):
         return native_text(decimal_text(x), owners)
 
-    waves = ffi.new("cv_wave[]", [
-        {"k": term.k, "phase": native_text(_nearly(term.phase), owners),
-         "amplitude": text(term.p if term in problem.searched else 0),
-         "part": [text(part if term in problem.searched else 0) for part in term.parts]}
-        for term in problem.terms])
+    def wave(term):
+        there = term in problem.searched
+        k, size = term.k, 1
+        if one:
+            size = sum(x * x for x in one.q)
+            k = [sum(a * b for a, b in zip(k, one.q)) // size]
+        return {"k": k, "phase": native_text(_nearly(term.phase), owners),
+                "amplitude": text(size * term.p if there else 0),
+                "part": [text(size * part if there else 0) for part in term.parts]}
+
+    waves = ffi.new("cv_wave[]", [wave(term) for term in problem.terms
+                                  if not one or term in problem.searched and term.most])
     owners.append(waves)
+    angles = [one.i] if one else range(problem.size)
+    ends = [problem.region[i] for i in angles]
     return ffi.new("cv_problem *", {
-        "n_angles": problem.size, "n_waves": len(problem.terms), "n_parameters": len(problem.parts),
-        "waves": waves, "angle": [text((low + high) / 2) for low, high in problem.region],
-        "half": [text((high - low) / 2) for low, high in problem.region],
-        "shift": [list(map(text, shifts)) for shifts in zip(*problem.shifts)],
-        "frame": rows(problem.frame), "odd": problem.odd is not None})
+        "n_angles": len(ends), "n_waves": len(waves), "n_parameters": len(problem.parts),
+        "waves": waves,
+        "angle": [text((low + high) / 2) for low, high in ends],
+        "half": [text((high - low) / 2) for low, high in ends],
+        "shift": [[text(shift[i]) for shift in problem.shifts] for i in angles],
+        "frame": [[one.c]] if one else rows(problem.frame), "odd": problem.odd is not None})
 
 
 def _nearly(phase):
@@ -218,19 +262,34 @@ class Search:
     """A search in the C core, which begins with the whole root as its only cell."""
 
     def __init__(self, task):
-        owners, settings = [], task.settings
+        owners, settings, xstar = [], task.settings, task.xstar
+        self.one = OneAngle.of(task.problem) if settings.method == "loewner" else None
         handle, self.size = ffi.new("cv_search **"), task.problem.size
+        if xstar and self.one:
+            xstar = [self.one.along(xstar)]
         check(lib.cv_search_new(
-            handle, native_problem(task.problem, owners),
-            [native_text(x, owners) for x in task.xstar] if task.xstar else ffi.NULL,
+            handle, native_problem(task.problem, owners, self.one),
+            [native_text(x, owners) for x in xstar] if xstar else ffi.NULL,
             METHODS[settings.method], settings.digits, settings.depth, settings.stubborn,
             settings.as_printed, task.longest))
         self.handle = ffi.gc(handle[0], lib.cv_search_free)
-        self.method = settings.method
+        self.method, self.given = settings.method, task.xstar
+        self.swaps = self.one is not None and self.one.i == 1   # the core's angle 0 is v1
 
     @property
     def xstar(self):
+        if self.one:
+            return tuple(str(Decimal(x)) for x in self.given) if self.given else \
+                self.one.point(_decimal(lib.cv_xstar(self.handle, 0)))
         return tuple(_decimal(lib.cv_xstar(self.handle, i)) for i in range(self.size))
+
+    def _letters(self, text):
+        """A tree of the core's as a file has it."""
+        return text.translate(SWAPPED) if self.swaps else text
+
+    def _axes(self, numbers):
+        """The same of a cell's index or cuts."""
+        return (numbers[1], numbers[0], *numbers[2:]) if self.swaps else tuple(numbers)
 
     @property
     def constants(self):
@@ -244,7 +303,7 @@ class Search:
 
     def has_axis(self, axis):
         """May a cell be cut along it?"""
-        return bool(lib.cv_has_axis(self.handle, axis))
+        return bool(lib.cv_has_axis(self.handle, 1 - axis if self.swaps and axis < 2 else axis))
 
     @property
     def skips(self):
@@ -253,7 +312,8 @@ class Search:
 
     def restart(self, cells):
         """Forgets the tree; these cells are to be decided now."""
-        check(lib.cv_restart(self.handle, len(cells), cells))
+        check(lib.cv_restart(self.handle, len(cells), [
+            (self._axes(index), self._axes(cuts), hint) for index, cuts, hint in cells]))
 
     def work(self, threads, look, leaves=MANY, points=math.inf):
         """Lets threads decide prisms, until there are as many leaves more or the orbits have as
@@ -275,9 +335,9 @@ class Search:
         check(lib.cv_look(self.handle, whole, view))
         nodes = view.length
         return Grown(
-            ffi.unpack(view.tree, nodes).decode("ascii") if nodes else "",
+            self._letters(ffi.unpack(view.tree, nodes).decode("ascii")) if nodes else "",
             ffi.unpack(view.steps, nodes) if nodes and steps else [], _counts(view.counts),
-            [(tuple(cell.index), tuple(cell.cuts), cell.hint) for cell in
+            [(self._axes(cell.index), self._axes(cell.cuts), cell.hint) for cell in
              (view.cells[n] for n in range(view.n_cells))],
             view.examined, bool(view.finished), bool(view.needs_long), view.points)
 

@@ -42,7 +42,10 @@ static mask within(const batch *w, int j)
 /* The gradient of n.beta n plus beta mu at a site: by (2), the sum of mu at both neighbours. */
 INLINE vec steepness(const batch *w, const point *q, int i)
 {
-    return q->beta[i] * q->mu[0] + q->beta[i + 1] * q->mu[1] - gradient(w, q, i);
+    vec times[N];
+
+    sym_times(N, times, q->beta, q->mu);
+    return times[i] - gradient(w, q, i);
 }
 
 /* The multipliers of the lanes that are active, by (2): zero outside, and from either end up to
@@ -54,12 +57,12 @@ static void set_multipliers(batch *w, mask active)
                             site_of(w, end + 1) };
 
     for (int j = 0; j < 4; j++)
-        for (int i = 0; i < 2; i++)
+        for (int i = 0; i < N; i++)
             ends[j]->mu[i] = pick(active, every(0.0), ends[j]->mu[i]);
     for (int j = end; j > ORIGIN + 1; j--) {
         const mask now = within(w, j);
         point *const q = site_of(w, j);
-        for (int i = 0; i < 2; i++) {
+        for (int i = 0; i < N; i++) {
             const vec mu = pick(now, steepness(w, q, i) - q[1].mu[i], every(0.0));
             q[-1].mu[i] = pick(active, mu, q[-1].mu[i]);
         }
@@ -67,7 +70,7 @@ static void set_multipliers(batch *w, mask active)
     for (int j = begin; j < ORIGIN; j++) {
         const mask now = within(w, j);
         point *const q = site_of(w, j);
-        for (int i = 0; i < 2; i++) {
+        for (int i = 0; i < N; i++) {
             const vec mu = pick(now, steepness(w, q, i) - q[-1].mu[i], every(0.0));
             q[1].mu[i] = pick(active, mu, q[1].mu[i]);
         }
@@ -136,8 +139,8 @@ static void weigh(const batch *w, point *q)
 INLINE void weights_along(const batch *w, const point *q, vec omega[], vec m[])
 {
     for (int i = 0; i < waves_of(w); i++) {
-        omega[i] = square(dot_k(w, i, q->n[0], q->n[1]));
-        m[i] = dot_k(w, i, q->mu[0], q->mu[1]);
+        omega[i] = square(dot_k(w, i, q->n));
+        m[i] = dot_k(w, i, q->mu);
     }
 }
 
@@ -160,14 +163,18 @@ INLINE vec remainder_of(const batch *w, const point *q, int i, vec A, vec B)
    where there is a link. */
 INLINE void sum_links(sums *t, const point *q, mask linked, const vec omega[])
 {
-    const vec *const next = q[1].n, squares = 2.0 * (omega[0] + omega[1]);
-    const vec link0 = pick(linked, q->n[0] * next[0], every(0.0));
-    const vec link1 = pick(linked, q->n[1] * next[1], every(0.0));
+    vec squares = every(0.0), links = every(0.0), sizes = every(0.0);
 
-    t->centre += squares;
-    t->mass += squares;
-    t->centre -= 2.0 * (link0 + link1);
-    t->mass += 2.0 * (mag(link0) + mag(link1));
+    for (int i = 0; i < N; i++) {
+        const vec link = pick(linked, q->n[i] * q[1].n[i], every(0.0));
+        squares += omega[i];
+        links += link;
+        sizes += mag(link);
+    }
+    t->centre += 2.0 * squares;
+    t->mass += 2.0 * squares;
+    t->centre -= 2.0 * links;
+    t->mass += 2.0 * sizes;
 }
 
 /* Adds what a wave makes of the prism at a site, except its cubic part with signs. */
@@ -185,7 +192,7 @@ INLINE void sum_wave(const batch *w, sums *t, const point *q, int i, const vec o
     t->cubes += mag(A) * q->cube_A[i] + mag(B) * q->cube_B[i];
     t->along[i] += A;
     for (int k = 0; k < columns; k++) {
-        c[k] = dot_k(w, i, q->lin[0][k], q->lin[1][k]);
+        c[k] = dot_k(w, i, q->lin[k]);
         f[k] = -0.5 * p * A * c[k];
     }
     add_moves(w, i, B, f);
@@ -202,7 +209,7 @@ INLINE void sum_left(const batch *w, sums *t, const point *q, int j, vec weights
     const uint64_t site = (uint64_t)j;
     const mask inside = TRUTH(w->since < site) & TRUTH(site < w->until);
 
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < N; i++) {
         const vec before = q[-1].mu[i], after = q[1].mu[i];
         const vec left = 4.0 * q->err_beta * weights + 0x1p-50 * (mag(before) + mag(after));
         if (j == ORIGIN || j == ORIGIN + 1) {
@@ -211,7 +218,7 @@ INLINE void sum_left(const batch *w, sums *t, const point *q, int j, vec weights
             if (j == ORIGIN)
                 t->rest += mag(steep) * q->rad[i];
             for (int k = 0; k < w->problem->columns && j > ORIGIN; k++)
-                t->slope[k] += steep * q->lin[i][k];
+                t->slope[k] += steep * q->lin[k][i];
             t->rounding += left * q->rad[i];
         } else {
             t->left += left * q->rad[i];
@@ -230,7 +237,7 @@ static vec ends_of(const batch *w, mask active)
             const point *const first = site_of(w, number(&w->from, k));
             const point *const last = site_of(w, number(&w->to, k));
             double sum = 0.0;
-            for (int i = 0; i < 2; i++)
+            for (int i = 0; i < N; i++)
                 sum += at(&first->n[i], k) * at(&first->n[i], k) +
                        at(&last->n[i], k) * at(&last->n[i], k);
             put_at(&squares, k, sum);
@@ -273,10 +280,13 @@ static void sum_up(batch *w, sums *total, mask active)
 }
 
 /* k.x, as a sum of two doubles. */
-INLINE sum2 exact_dot_k(const batch *w, int wave, const vec x[2])
+INLINE sum2 exact_dot_k(const batch *w, int wave, const vec x[N])
 {
-    return sum2_plus(sum2_of_product(every(k_of(w, wave)[0]), x[0]),
-                     sum2_of_product(every(k_of(w, wave)[1]), x[1]));
+    sum2 sum = sum2_of_product(every(k_of(w, wave)[0]), x[0]);
+
+    for (int i = 1; i < N; i++)
+        sum = sum2_plus(sum, sum2_of_product(every(k_of(w, wave)[i]), x[i]));
+    return sum;
 }
 
 /* p (m sin y + omega cos y) of a wave at a site, as a sum of two doubles.  Sines are off by 2^-100,
@@ -322,7 +332,7 @@ static void leave_exactly(batch *w, sums *total, mask active)
             pull[i] = exact_pull(w, q, i);
         const vec weights = weights_of(w, omega, m) + TINY;
         const vec sizes = q->err_beta * (1.0 / grain_of(w));
-        for (int i = 0; i < 2; i++) {
+        for (int i = 0; i < N; i++) {
             const vec before = q[-1].mu[i], after = q[1].mu[i];
             sum2 G = sum2_plus(sum2_of_sum(2.0 * q->mu[i], -before), (sum2){ -after, every(0.0) });
             FOR_WAVES(w, wave) {
@@ -336,7 +346,7 @@ static void leave_exactly(batch *w, sums *total, mask active)
             t.mass += mag(leaves) * q->rad[i];
             t.rest += mag(leaves) * q->nonlin_bound[i];
             for (int k = 0; k < columns; k++)
-                t.slope[k] += leaves * q->lin[i][k];
+                t.slope[k] += leaves * q->lin[k][i];
         }
         if (j % BLOCK == 0)
             add_block((vec *)total, (vec *)&lost, (vec *)&t, used_of(w));
@@ -344,8 +354,8 @@ static void leave_exactly(batch *w, sums *total, mask active)
     end_blocks((vec *)total, (vec *)&lost, (vec *)&t, used_of(w));
 }
 
-/* The cubic part of (4): cubic[n] at pair(k, l) is a coefficient of e_n e_k e_l, one of those that
-   make it up. */
+/* The cubic part of (4): cubic[n] at sym_at(k, l) is a coefficient of e_n e_k e_l, one of those
+   that make it up. */
 static void sum_cubic(batch *w, mask active)
 {
     const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
@@ -363,13 +373,13 @@ static void sum_cubic(batch *w, mask active)
             trig_coefficients(q, i, omega, m, &A, &B);
             const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0);
             for (int k = 0, kl = 0; k < columns; k++) {
-                const vec c = dot_k(w, i, q->lin[0][k], q->lin[1][k]);
+                const vec c = dot_k(w, i, q->lin[k]);
                 for (int l = k; l < columns; l++, kl++) {
                     const double half = l == k ? 0.5 : 1.0;     /* of (c.e)^2/2 */
-                    const vec cc = half * c * dot_k(w, i, q->lin[0][l], q->lin[1][l]);
-                    const vec quad = dot_k(w, i, q->quad[0][kl], q->quad[1][kl]);
+                    const vec cc = half * c * dot_k(w, i, q->lin[l]);
+                    const vec quad = dot_k(w, i, q->quad[kl]);
                     form[i][kl] = -pA * quad - third * cc;
-                    for (int n = 2; n < columns; n++)
+                    for (int n = N; n < columns; n++)
                         if (w->problem->moves[i][n])
                             block[n][kl] +=
                                 pick(now, w->part[i][n] * (B * quad - A * cc), every(0.0));
@@ -379,7 +389,7 @@ static void sum_cubic(batch *w, mask active)
         for (int n = 0; n < columns; n++) {                     /* (c.e) form[e, e] */
             vec c[SLOTS];
             FOR_WAVES(w, i)
-                c[i] = dot_k(w, i, q->lin[0][n], q->lin[1][n]);
+                c[i] = dot_k(w, i, q->lin[n]);
             for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
                 vec sum = every(0.0);
                 FOR_WAVES(w, i)
@@ -406,19 +416,19 @@ static vec summit(const batch *w, int with_cubic)
 
     for (int k = 0; k < columns; k++) {
         slope[k] = w->slope[k];
-        sum += larger(every(0.0), w->square[pair(columns, k, k)]);
+        sum += larger(every(0.0), w->square[sym_at(columns, k, k)]);
     }
     for (int k = 0; k < columns && with_cubic; k++)
         for (int l = 0; l < columns; l++) {
             const vec *const linear = w->cubic[l], *const other = w->cubic[k];
-            const vec more = l == k ? every(0.0) : other[pair(columns, k, l)];
-            const vec x = linear[pair(columns, k, k)] + more;
+            const vec more = l == k ? every(0.0) : other[sym_at(columns, k, l)];
+            const vec x = linear[sym_at(columns, k, k)] + more;
             slope[l] += (l == k ? 0.75 : 0.5) * x;
             sum += (l == k ? 0.25 : 0.5) * mag(x);
             for (int m = l + 1; m < columns && k < l; m++)
-                triple[k][l][m] = w->cubic[k][pair(columns, l, m)] +
-                                  w->cubic[l][pair(columns, k, m)] +
-                                  w->cubic[m][pair(columns, k, l)];
+                triple[k][l][m] = w->cubic[k][sym_at(columns, l, m)] +
+                                  w->cubic[l][sym_at(columns, k, m)] +
+                                  w->cubic[m][sym_at(columns, k, l)];
         }
     for (int corner = 0; corner < 1 << (columns - 1); corner++) {
         vec odd = every(0.0), even = every(0.0);
@@ -428,7 +438,7 @@ static vec summit(const batch *w, int with_cubic)
         for (int k = 0; k < columns; k++) {
             vec mixed = every(0.0), cubic = slope[k];
             for (int l = k + 1; l < columns; l++) {
-                mixed += sign[l] * w->square[pair(columns, k, l)];
+                mixed += sign[l] * w->square[sym_at(columns, k, l)];
                 for (int m = l + 1; m < columns && with_cubic; m++)
                     cubic += sign[l] * sign[m] * triple[k][l][m];
             }
@@ -446,12 +456,12 @@ static vec summit(const batch *w, int with_cubic)
    are multiplied by anywhere, with omega + |m| in their place: with rho = a + b that is at most |p|
    (e^rho - 1 - rho) + h e^rho + err_amp (1 + rho) to the fifth order in rho, of which (size rho^2 +
    h + err_amp)(1 + rho)^3 is more.  (`load` is that of all waves, and the weights are at least each
-   omega + |m|.)  Sines are off by 1.01 u, omega and m by 5 u, and two products and a sum make A and
-   B off by 10 u of the weights; products of them, p among these, by 15 u more.  At each site at
+   omega + |m|.)  Sines are off by 1.01 u, omega and m by 7 u, and two products and a sum make A and
+   B off by 12 u of the weights; products of them, p among these, by 15 u more.  At each site at
    most 22 numbers, of 16 waves, are added to a sum, and each addition rounds by u of the partial
    sums of its block, of n = min(N, BLOCK) sites.  The blocks are fewer than 2^14, so the sum of
    what they lose is off by 2^28 u^2, and this and what it is added to by u.  Summit and the last
-   sums make 45 additions.  So all is off by (22 n + 74) u of the mass, where `each` has 32 n + 128.
+   sums make 60 additions.  So all is off by (22 n + 91) u of the mass, where `each` has 32 n + 128.
    Positive sums are off by (22 n + 34) u of themselves, which `each` also covers.  In leave_exactly
    the sites ORIGIN and ORIGIN + 1 end no block; a block has 2 n sites at most, of 2 additions each,
    which are fewer than 22 n.  (2) leaves at most (13 + N') u (1 + S) of the weights, N' waves, and
@@ -520,12 +530,12 @@ static void bound_shares(batch *w, mask active)
         w->share[k] = mag(w->slope[k]);
     for (int k = 0; k < columns; k++)
         for (int l = k; l < columns; l++) {
-            const vec x = w->square[pair(columns, k, l)];
+            const vec x = w->square[sym_at(columns, k, l)];
             const vec part = l == k ? larger(every(0.0), x) : mag(x);
             w->share[k] += part;
             w->share[l] += part;
             for (int m = 0; m < columns; m++) {
-                const vec y = mag(w->cubic[m][pair(columns, k, l)]);
+                const vec y = mag(w->cubic[m][sym_at(columns, k, l)]);
                 w->share[k] += y;
                 w->share[l] += y;
                 w->share[m] += y;
@@ -542,7 +552,7 @@ static void bound_shares(batch *w, mask active)
             trig_coefficients(q, i, omega, m, &A, &B);
             const vec part = 4.0 * remainder_of(w, q, i, A, B) / q->rad[i];
             for (int k = 0; k < columns; k++) {
-                const vec more = part * mag(dot_k(w, i, q->lin[0][k], q->lin[1][k]));
+                const vec more = part * mag(dot_k(w, i, q->lin[k]));
                 w->share[k] += pick(some, more, every(0.0));
             }
         }

@@ -16,7 +16,7 @@ typedef struct {
 /* Where each parameter is t, without the waves that are zero there. */
 static waves potential_of(const patch *p, double t, numbers *room)
 {
-    waves v = { 0, (const int (*)[ANGLES])room->k, room->phase, room->p };
+    waves v = { p->n_angles, 0, (const int (*)[ANGLES])room->k, room->phase, room->p };
     double amplitude[MOST_WAVES];
 
     patch_amplitudes(p, t, amplitude);
@@ -42,11 +42,12 @@ static double bend_of(const waves *v)
     double sum = 0.0;
 
     for (int i = 0; i < v->n; i++)
-        sum += fabs(v->p[i]) * (double)(v->k[i][0] * v->k[i][0] + v->k[i][1] * v->k[i][1]);
+        sum += fabs(v->p[i]) * (double)(v->k[i][0] * v->k[i][0] + v->k[i][1] * v->k[i][1] +
+                                        v->k[i][2] * v->k[i][2]);
     return sum;
 }
 
-static void loewner_choose_start(const patch *p, int symmetric, double x[2])
+static void loewner_choose_start(const patch *p, int symmetric, double x[ANGLES])
 {
     numbers numbers_of[3];
     const waves middle = potential_of(p, 0.0, &numbers_of[0]);
@@ -62,7 +63,7 @@ static int find_at_once(const loewner *w, const patch *p)
     const int one = p->n_parameters == 1;
     numbers room;
     const waves v = potential_of(p, one ? 1.0 : 0.0, &room);
-    double x[2];
+    double x[ANGLES] = { 0.0 };
 
     if (!p->odd)
         return 0;

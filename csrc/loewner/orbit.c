@@ -14,12 +14,11 @@
    the largest wave and across it.
 
    Along each wave rad = rho bounds |D[j]|. */
-#include "arith/sym2.h"
 #include "prism.h"
 
 static const double WIDEN = 1.0 + 0x1p-46;      /* of sums of positive terms: 128 u */
 
-/* Bounds of |L e| and |T[e, e]| along each wave: sums of at most 15 positive terms. */
+/* Bounds of |L e| and |T[e, e]| along each wave: sums of at most 21 positive terms. */
 static void measure(const batch *w, point *q)
 {
     const int columns = w->problem->columns;
@@ -27,11 +26,11 @@ static void measure(const batch *w, point *q)
     for (int i = 0; i < waves_of(w); i++) {
         vec sum = every(0.0);
         for (int k = 0; k < columns; k++)
-            sum += mag(dot_k(w, i, q->lin[0][k], q->lin[1][k]));
+            sum += mag(dot_k(w, i, q->lin[k]));
         q->lin_bound[i] = sum * WIDEN;
         sum = every(0.0);
         for (int kl = 0; kl < columns * (columns + 1) / 2; kl++)
-            sum += mag(dot_k(w, i, q->quad[0][kl], q->quad[1][kl]));
+            sum += mag(dot_k(w, i, q->quad[kl]));
         q->quad_bound[i] = sum * WIDEN;
     }
     bound_err_dot(w, q);
@@ -52,13 +51,11 @@ static void bound_displacement(const batch *w, point *q)
 /* Sets a point to zero in the lanes that cannot use it, so that all that follows is finite. */
 static void forget(const batch *w, point *q)
 {
-    /* clang-format off */
-    vec *const parts[] = { q->lin[0], q->lin[1], q->quad[0], q->quad[1],
-                           q->rem, q->lin_bound, q->quad_bound, q->nonlin_bound, q->rad };
-    /* clang-format on */
-    const int columns = w->problem->columns, pairs = columns * (columns + 1) / 2;
-    const int waves = waves_of(w);
-    const int sizes[] = { columns, columns, pairs, pairs, 2, waves, waves, waves, waves };
+    vec *const parts[] = {
+        q->lin[0], q->rem, q->lin_bound, q->quad_bound, q->nonlin_bound, q->rad
+    };
+    const int columns = w->problem->columns, waves = waves_of(w);
+    const int sizes[] = { N * columns * (columns + 3) / 2, N, waves, waves, waves, waves };
 
     for (size_t j = 0; j < sizeof parts / sizeof *parts; j++)
         for (int k = 0; k < sizes[j]; k++)
@@ -70,7 +67,7 @@ static void forget(const batch *w, point *q)
 static void finish(const batch *w, point *q)
 {
     evaluate(w, q);
-    q->least = sym2_least_eigenvalue(q->beta);
+    q->least = sym_least_eigenvalue(N, q->beta);
 }
 
 /* How far a wave p' cos(y + z), p' = p + h e + w, may be from what L and T make of it,
@@ -91,7 +88,7 @@ static vec wave_remainder(const batch *w, const point *q, int wave)
            w->h[wave] * (c * half_square + s * (b + cube)) + w->err_amp[wave];
 }
 
-/* What roundings make of the quadratic form that a wave adds to T: (11 + N) u (|p| a^2/2 + h a), N
+/* What roundings make of the quadratic form that a wave adds to T: (11 + W) u (|p| a^2/2 + h a), W
    waves.  The columns along the wave, and so a, are those of the doubles. */
 static vec bending_err(const batch *w, const point *q, int wave)
 {
@@ -100,52 +97,66 @@ static vec bending_err(const batch *w, const point *q, int wave)
     return grain_of(w) * (mag(w->p[wave]) * a * a + 2.0 * w->h[wave] * a);
 }
 
-/* inverse = 1/d, and a bound of its roundings: the determinant is off by 1 + condition units, so
-   the inverse is off by 4 + condition units of its trace, where `rounded` has 8 (1 + condition).
-   Returns where the inverse is of use. */
-INLINE mask invert_factor(const vec d[3], vec inverse[3], vec *rounded)
+/* inverse = 1/d, and a bound of its roundings.  The condition c is the product of d's diagonal over
+   the determinant.  Where this returns true, d is positive definite, and the entries of inverse are
+   off by less than 2, 3 + 2 c, or 2 + 25 c units u of its trace, for N = 1, 2, 3, where `rounded`
+   has 2, 8, or 32 times 1 + c: docs/proofs/argument.md, section 8, *rounded*. */
+INLINE mask invert_factor(const vec d[ENTRIES], vec inverse[ENTRIES], vec *rounded)
 {
-    const vec det = d[0] * d[2] - d[1] * d[1], one = 1.0 / det;
-    const vec condition = (mag(d[0] * d[2]) + d[1] * d[1]) * one;
+    vec cofactor[ENTRIES];
+    const vec det = sym_adjugate(N, cofactor, d), one = 1.0 / det;
+    vec condition = one, trace = every(0.0);
+    mask good = TRUTH(d[0] > 0.0) & TRUTH(det > TINY);
 
-    inverse[0] = d[2] * one;
-    inverse[1] = -d[1] * one;
-    inverse[2] = d[0] * one;
-    *rounded = 0x1p-50 * (inverse[0] + inverse[2]) * (1.0 + condition);
-    return TRUTH(d[0] > 0.0) & TRUTH(det > TINY) & TRUTH(condition < 0x1p20);
+    for (int i = 0; i < ENTRIES; i++)
+        inverse[i] = cofactor[i] * one;
+    for (int i = 0; i < N; i++) {
+        const int ii = sym_at(N, i, i);
+        condition *= d[ii];
+        trace += inverse[ii];
+        good &= TRUTH(cofactor[ii] > 0.0);
+    }
+    *rounded = (1 << (2 * N - 1)) * 0x1p-53 * trace * (1.0 + condition);
+    return good & TRUTH(condition < 0x1p20);
 }
 
-/* q->force, a bound of R f.  f begins as r(o), which is zero or the rounding of x*.  e has the
+/* q->force, a bound of O f.  f begins as r(o), which is zero or the rounding of x*.  e has the
    bound of wave_remainder along each wave, and in each coordinate the residual and the roundings of
    lin and quad: 2 u of them, propagate_err and bending_err. */
 INLINE void set_force(const batch *w, const point *next, point *q, const point *o,
-                      const vec inverse[3], vec rounded, int is_first)
+                      const vec inverse[ENTRIES], vec rounded, int is_first)
 {
-    vec wave_err[SLOTS], lost[SLOTS], err[2];
+    vec wave_err[SLOTS], lost[SLOTS], err[N];
 
     FOR_WAVES(w, j) {
         wave_err[j] = wave_remainder(w, q, j);
         lost[j] = propagate_err(w, q, j) + bending_err(w, q, j);
     }
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < N; i++)
         err[i] = sum_abs_k(w, i, lost) + w->residual[i] +
                  0x1p-50 * (next->lin_bound[i] + next->quad_bound[i] + o->rad[i]);
-    for (int i = 0; i < 2; i++) {
-        const vec i0 = mag(inverse[i]) + rounded, i1 = mag(inverse[i + 1]) + rounded;
+    for (int i = 0; i < N; i++) {
         vec e = sum_onto(w, i, wave_err) + onto_axis(w, i, err);
-
-        e += is_first ? o->rem[i] : i0 * o->force[0] + i1 * o->force[1];
-        e += (2.0 * q->err_beta + rounded) * (q->rem[0] + q->rem[1]);
-        q->force[i] = e * WIDEN;
+        vec before = o->rem[i], rems = q->rem[0];
+        for (int j = 0; j < N && !is_first; j++) {
+            const vec of = (mag(inverse[sym_at(N, i, j)]) + rounded) * o->force[j];
+            before = j == 0 ? of : before + of;
+        }
+        for (int j = 1; j < N; j++)
+            rems += q->rem[j];
+        q->force[i] = (e + before + (2.0 * q->err_beta + rounded) * rems) * WIDEN;
     }
 }
 
-/* next->rem, a bound of R r, by the factor and the force of q. */
+/* next->rem, a bound of O r, by the factor and the force of q. */
 INLINE void set_remainder(point *next, const point *q)
 {
-    for (int i = 0; i < 2; i++)
-        next->rem[i] =
-            (mag(q->d[i]) * q->rem[0] + mag(q->d[i + 1]) * q->rem[1] + q->force[i]) * WIDEN;
+    for (int i = 0; i < N; i++) {
+        vec sum = mag(q->d[i]) * q->rem[0];
+        for (int j = 1; j < N; j++)
+            sum += mag(q->d[sym_at(N, i, j)]) * q->rem[j];
+        next->rem[i] = (sum + q->force[i]) * WIDEN;
+    }
 }
 
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins with
@@ -156,24 +167,26 @@ INLINE void set_remainder(point *next, const point *q)
    r' = d r + f and, from the last step, r(o) = (r - f(o))/d(o), gives
    f = f(o)/d(o) + e + (beta - 1/d(o) - d) r.
 
-   rem, force and d are those of R r, R f and R d R'/|k|^2, R as in set_axes, for which the same
-   holds with R e, and with R beta R'/|k|^2 for beta.  The last bracket is rounding.  Of what is off
-   in an entry of beta, u (3 + (7 + N) S), an entry has twice as much there, as (|k0| + |k1|)^2 is 2
-   |k|^2 at most; along_axes loses 4 u of sums below 2 (2 + S), and the difference u of that: in
-   all u (26 + (24 + 2 N) S), where 2 err_beta are (28 + 2 N) u (1 + S). */
+   rem, force and d are those of O r, O f and O d O', O as in set_axes, for which the same holds
+   with O e, and with O beta O' for beta.  The last bracket is rounding.  What is off in the elements
+   of beta (waves.h: evaluate) makes u (3 + (7 + W) S) in those of O beta O', as the rows of O have
+   length 1, and the length of k is |k| at most.  along_axes loses 10 u of sums below 2 + S, and the
+   difference u of that: in all u (25 + (18 + W) S), where 2 err_beta are
+   (24 + 2 N + 2 W) u (1 + S). */
 static void step(const batch *w, point *next, point *q, const point *o, int is_first)
 {
     static const double RAD_MAX = 0x1p10;       /* A point with a rad above 1,024 is of no use. */
-    vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0), turned[3];
+    vec inverse[ENTRIES], rounded = every(0.0), turned[ENTRIES];
 
-    for (int i = 0; i < 2; i++)
+    memset(inverse, 0, sizeof inverse);
+    for (int i = 0; i < N; i++)
         next->x[i] = q->x[i] + q->x[i] - o->x[i] + q->push[i];
     propagate(w, next, q, o);
     measure(w, next);
     next->reached = is_first ? ~none() : invert_factor(o->d, inverse, &rounded);
     set_force(w, next, q, o, inverse, rounded, is_first);
     along_axes(w, turned, q->beta);
-    for (int j = 0; j < 3; j++)
+    for (int j = 0; j < ENTRIES; j++)
         q->d[j] = turned[j] - inverse[j];
     set_remainder(next, q);
     bound_displacement(w, next);
@@ -187,25 +200,27 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
    of memory. */
 static int begin(batch *w)
 {
-    const double *const off = w->problem->xstar_err;
-    const vec star_err[2] = { every(off[0]), every(off[1]) };
+    vec star_err[N];
 
     if (!make_room(w, ORIGIN) || !make_room(w, ORIGIN + 1))
         return 0;
     point *const origin = site_of(w, ORIGIN);
     clear(w, origin);
     clear(w, origin + 1);
-    for (int i = 0; i < 2; i++) {
-        origin->x[i] = w->problem->turns.xstar[i] - none();
-        origin->rem[i] = onto_axis(w, i, star_err) * WIDEN;
+    for (int i = 0; i < N; i++) {
         const double *const frame = w->problem->frame[i];
+        star_err[i] = every(w->problem->xstar_err);
+        origin->x[i] = w->problem->turns.xstar[i] - none();
         origin[1].x[i] = w->x1[i];
-        for (int k = 0; k < 2; k++)
-            origin[1].lin[i][k] = frame[k] * w->width[k];
-        for (int k = 2; k < w->problem->columns; k++)
-            origin[1].lin[i][k] = frame[0] * w->shift[0][k] + frame[1] * w->shift[1][k];
-        origin[i].reached = ~none();
+        for (int k = 0; k < N; k++)
+            origin[1].lin[k][i] = frame[k] * w->width[k];
+        for (int k = N; k < w->problem->columns; k++)
+            for (int j = 0; j < N; j++)
+                origin[1].lin[k][i] += frame[j] * w->shift[j][k];
     }
+    for (int i = 0; i < N; i++)
+        origin->rem[i] = onto_axis(w, i, star_err) * WIDEN;
+    origin[0].reached = origin[1].reached = ~none();
     measure(w, origin + 1);
     for (int j = 0; j < 2; j++) {
         bound_displacement(w, origin + j);

@@ -1,5 +1,5 @@
 /* prism.h - what the files of an engine share: the prisms at hand and the orbits that start in
-   them, one in each lane.  The slots 0 and 1 of waves are the coordinates themselves: see waves.h.
+   them, one in each lane.  The first slots of waves are the coordinates themselves: see waves.h.
 
    The criterion (docs/proofs/argument.md has all of this file's mathematics).  Orbits on an
    invariant Lagrangian graph minimize, so their second variation
@@ -10,7 +10,7 @@
 
        Q = sum n[j].beta(x[j])n[j] - 2 sum n[j].n[j+1] - l (|n[s]|^2 + |n[t]|^2) < 0.           (1)
 
-   A prism is a set of orbits: x[0] = x*, x[1] in a rectangle, which may move with the parameters,
+   A prism is a set of orbits: x[0] = x*, x[1] in a box, which may move with the parameters,
    the amplitudes on an affine image of the parameters' box.  orbit.c follows it, witness.c chooses
    n for the orbit of its centre, bound.c bounds (1) for that n over all of it, and try.c does one
    after the other until it is proved or hopeless.
@@ -33,8 +33,12 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-#include "arith/lanes.h"
+#include "arith/sym.h"
 #include "problem.h"
+
+/* N is the number of angles.  Of a symmetric matrix there are ENTRIES: sym.h. */
+enum { FIRST = N, COLUMNS = N + PARAMETERS, PAIRS = COLUMNS * (COLUMNS + 1) / 2 };
+enum { ENTRIES = N * (N + 1) / 2 };
 
 #define FOR_WAVES(w, j) for (int j = FIRST; j < waves_of(w); j++)
 enum { ORIGIN = 2 * MAX_POINTS };       /* the site of x*: those of all points are positive */
@@ -45,45 +49,45 @@ enum { FIRST_ROOM = 64, MAX_DOUBLINGS = 16 };
 /* One point of the orbits of the prisms' centres, and all that is known of its neighbours. */
 typedef struct {
     /* As many as there are columns, pairs of them and slots: room.c lays them out. */
-    vec *lin[2];                        /* L: columns of v0, v1, then the parameters that move */
-    vec *quad[2];                       /* T: the coefficients of e_k e_l, at pair(k, l) */
+    vec (*lin)[N]; /* L: columns of the angles, then of parameters that move */
+    vec (*quad)[N]; /* T: the coefficients of e_k e_l, at sym_at(k, l) */
     vec *sine, *cosine;
-    vec *lin_bound, *quad_bound;        /* of D along a wave: |L e| and |T[e, e]| */
-    vec *nonlin_bound, *rad;            /* |D - L e| and |D| */
+    vec *lin_bound, *quad_bound; /* of D along a wave: |L e| and |T[e, e]| */
+    vec *nonlin_bound, *rad; /* |D - L e| and |D| */
     vec *err_dot; /* roundings of L e and T[e, e] along a wave; slots from FIRST */
     vec *rest_A[2], *rest_B, *cube_A, *cube_B; /* see weigh */
-    mask x[2], push[2];                 /* in 2^-64 turns: the point, and what its waves add */
-    vec rem[2], force[2];               /* bounds of r and f along the axes of the problem */
-    vec d[3];                           /* the factor in these axes: d00, d01, d11 */
-    vec rad_max;                        /* the largest rad of a wave, by their weights */
-    vec beta[3];                        /* beta00, beta01, beta11 */
-    vec least;                          /* eigenvalue of beta, about */
-    vec err_beta;                       /* how far p sin, p cos and entries of beta may be off */
-    vec n[2], mu[2], load;              /* load: see weigh */
-    vec left[3], right[3];              /* the blocks of the recursion from either end */
-    mask reached;                       /* can the orbit go on to here? */
+    mask x[N], push[N]; /* in 2^-64 turns: the point, and what its waves add */
+    vec rem[N], force[N]; /* bounds of r and f along the axes of the problem */
+    vec d[ENTRIES]; /* the factor in these axes */
+    vec rad_max; /* the largest rad of a wave, by their weights */
+    vec beta[ENTRIES];
+    vec least; /* eigenvalue of beta, about */
+    vec err_beta; /* how far p sin, p cos and entries of beta may be off */
+    vec n[N], mu[N], load; /* load: see weigh */
+    vec left[ENTRIES], right[ENTRIES]; /* the blocks of the recursion from either end */
+    mask reached; /* can the orbit go on to here? */
 } point;
 
 typedef struct {
     const loewner *problem;
-    vec p_low[SLOTS];                   /* what p lacks of the centre's amplitude */
+    vec p_low[SLOTS]; /* what p lacks of the centre's amplitude */
     vec p[SLOTS], part[SLOTS][COLUMNS]; /* part[k] moves with the column k of a parameter */
-    vec h[SLOTS], err_amp[SLOTS];       /* h: the sum of |part|; err_amp: rounding */
-    vec weight[SLOTS];                  /* of the rad along a wave: see weigh_waves */
-    vec size[SLOTS];                    /* |p| + h + err_amp */
+    vec h[SLOTS], err_amp[SLOTS]; /* h: the sum of |part|; err_amp: rounding */
+    vec weight[SLOTS]; /* of the rad along a wave: see weigh_waves */
+    vec size[SLOTS]; /* |p| + h + err_amp */
     mask force[SLOTS], backward[SLOTS]; /* |p| in 2^(coarse - 65) turns; is p negative? */
-    vec residual[2];                    /* of any step of the centre: a bound of |E| */
-    mask x1[2];                         /* in 2^-64 turns */
-    vec width[2], shift[2][COLUMNS], l; /* shift[i][k]: of v_i with column k >= 2 */
+    vec residual[N]; /* of any step of the centre: a bound of |E| */
+    mask x1[N]; /* in 2^-64 turns */
+    vec width[N], shift[N][COLUMNS], l; /* shift[i][k]: of v_i with column k >= N */
     /* what bound.c finds */
     vec slope[COLUMNS], square[PAIRS], cubic[COLUMNS][PAIRS]; /* Q's part with signs */
     vec bound, rounding, share[COLUMNS];
-    int known_first, known_last;        /* the points that were computed */
-    int weighed_first, weighed_last;    /* the points that bound.c has seen */
-    int first[LANES], last[LANES];      /* the points of the orbits */
-    double end_rad[LANES][2];           /* how widely these are known: first, last */
-    mask from, to, since, until;        /* n is zero before from and after to; all: see witness */
-    point *points;                      /* of the sites lowest, lowest + 1, ..., room of them */
+    int known_first, known_last; /* the points that were computed */
+    int weighed_first, weighed_last; /* the points that bound.c has seen */
+    int first[LANES], last[LANES]; /* the points of the orbits */
+    double end_rad[LANES][2]; /* how widely these are known: first, last */
+    mask from, to, since, until; /* n is zero before from and after to; all: see witness */
+    point *points; /* of the sites lowest, lowest + 1, ..., room of them */
     int lowest, room, doublings;
     char *memory, *vectors[MAX_DOUBLINGS]; /* what they lie in: room.c */
     int out_of_memory;
@@ -100,7 +104,7 @@ static const double TINY = 0x1p-800;
 /* Adds, for each column, what the wave's amplitude moves with its symbol, times a factor. */
 INLINE void add_moves(const batch *w, int wave, vec factor, vec to[])
 {
-    for (int k = 2; k < w->problem->columns; k++)
+    for (int k = N; k < w->problem->columns; k++)
         if (w->problem->moves[wave][k])
             to[k] += w->part[wave][k] * factor;
 }

@@ -10,7 +10,7 @@ static size_t vectors_of(const loewner *problem)
 {
     const size_t columns = (size_t)problem->columns;
 
-    return columns * (columns + 3) + WAVE_VECTORS * (size_t)problem->waves;
+    return N * columns * (columns + 3) / 2 + WAVE_VECTORS * (size_t)problem->waves;
 }
 
 static void *aligned(char *memory) { return memory + (ALIGNMENT - (uintptr_t)memory % ALIGNMENT); }
@@ -24,11 +24,9 @@ static void lay_out(const loewner *problem, point *q, vec *next)
                                            &q->err_dot,    &q->rest_A[0],    &q->rest_A[1],
                                            &q->rest_B,     &q->cube_A,       &q->cube_B };
 
-    for (int i = 0; i < 2; i++) {
-        q->lin[i] = next;
-        q->quad[i] = next + columns;
-        next += columns + pairs;
-    }
+    q->lin = (vec(*)[N])next;
+    q->quad = q->lin + columns;
+    next = q->quad[pairs];
     for (int j = 0; j < WAVE_VECTORS; j++, next += problem->waves)
         *of_slots[j] = next;
 }
@@ -36,7 +34,7 @@ static void lay_out(const loewner *problem, point *q, vec *next)
 /* All numbers of a point become zero. */
 static void clear(const batch *w, point *q)
 {
-    memset(q->lin[0], 0, vectors_of(w->problem) * sizeof(vec));
+    memset(q->lin, 0, vectors_of(w->problem) * sizeof(vec));
     memset(q->x, 0, sizeof *q - offsetof(point, x));
 }
 

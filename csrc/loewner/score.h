@@ -3,6 +3,8 @@
 #ifndef CONVERSE_SCORE_H
 #define CONVERSE_SCORE_H
 
+#include "arith/sym.h"
+#include "model/patch.h"
 #include "model/stationary.h"
 
 enum { GUESSES = 8 };
@@ -14,29 +16,28 @@ enum { NEAR_REACH = 4, FAR_REACH = 6 };
    way, so half of these offsets are all. */
 typedef struct {
     const waves *v;
-    int flat;                           /* Does no wave depend on the second angle? */
     int reach, step;                    /* reach: points of an orbit on each side of x* */
     double scale, l;                    /* l: see least_slope in converse/prover/links.py */
-    double xstar[2], middle[2], beta[3];
-    double guess[GUESSES][2];           /* offsets whose orbits left most, the latest first */
+    double xstar[ANGLES], middle[ANGLES], beta[MOST_ENTRIES];
+    double guess[GUESSES][ANGLES]; /* offsets whose orbits left most, the latest first */
 } orbits;
 
 /* The value of a function at x if it is less than `enough`; otherwise any number that is not. */
-typedef double function(void *context, const double x[2], double enough);
+typedef double function(void *context, const double x[ANGLES], double enough);
 
 /* The largest score of an orbit through x.  All points of the orbit but x are eliminated from its
    second variation.  The score is the least eigenvalue of the form at x that is left; -HUGE_VAL
    where a point that was eliminated contradicts minimality. */
-function score;                         /* the context is orbits */
+function score; /* the context is orbits */
 
 /* Gains of less than this may be rounding. */
 static const double GAIN_MIN = 1e-6;
 
-/* Along the diagonal, along the first angle, anywhere. */
-typedef enum { DIAGONAL, FIRST_ANGLE, ANYWHERE } ways;
+typedef enum { DIAGONAL, ANYWHERE } ways; /* of one angle they are the same */
 
-/* Moves x, where f has this value, to places where f is smaller by GAIN_MIN or more, in steps that
-   are halved HALVINGS times.  Returns the value there. */
-double descend(function *f, void *context, double x[2], double value, double step, ways where);
+/* Moves x, of so many angles, where f has this value, to places where f is smaller by GAIN_MIN or
+   more, in steps that are halved HALVINGS times.  Returns the value there. */
+double descend(function *f, void *context, int angles, double x[ANGLES], double value, double step,
+               ways where);
 
 #endif

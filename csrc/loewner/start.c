@@ -6,20 +6,18 @@
    minimizing orbits avoid most.  If nine points contradict every orbit through it by a margin, the
    proof is easy, and no other place is looked for.  The second choice is where the score of these
    nine points is least (score.h).  If no orbit is left, weaker waves are asked: the place hardly
-   depends on their size.  Where all waves are parallel, one angle is searched, on a finer grid.
-   Where V is symmetric about the diagonal, the best place on it and the best place elsewhere are
-   compared by thirteen points. */
+   depends on their size.  Where V is symmetric about the diagonal,
+   the best place on it and the best place elsewhere are compared by thirteen points. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "arith/sym2.h"
-#include "model/patch.h"
 #include "score.h"
 #include "start.h"
 
 enum { COARSEST_GRID = 24, FINEST_GRID = 240 }; /* places per turn, where beta and V are surveyed */
-enum { PLACES = 16, FLAT_PLACES = 64 }; /* per turn, where scores are first computed */
+/* Places per turn, where scores are first computed, of one, two and three angles. */
+static const int PLACES[ANGLES] = { 64, 16, 8 };
 static const double PI = 3.14159265358979323846;
 static const double BETWEEN = 0.28; /* of the way from the least beta to the least potential */
 static const double ROUNDING = 1e-12; /* Values on the grid that differ by less are equal. */
@@ -30,30 +28,57 @@ static const double GAIN_OFF_DIAGONAL = 0.001;
    of them near the least amplitudes that one x* proves, chose these scores (2026-11-25).  An
    EASY_SCORE from -0.2 to -0.03 changed the number of tries by less than 0.1 %.  A SCORE_LEFT of
    0.05 or 0.08 lost one proof more than 0.06 did. */
-static const double EASY_SCORE = -0.1, WEAKENING = 0.97, SCORE_LEFT = 0.06, FLAT_SCORE_LEFT = 0.04;
+static const double EASY_SCORE = -0.1, WEAKENING = 0.97, SCORE_LEFT = 0.06,
+                    SCORE_LEFT_OF_ONE = 0.04;
 /* B - 2 of the weakened waves is in this range: there is no torus above, nothing to prove below. */
 static const double STRONGEST = 1.5, WEAKEST = 0.5;
 
 /* ---- the least eigenvalue of beta, and the least potential */
 
-typedef struct {
-    objective *f;
-    const waves *v;
-} valley;
-
-static double depth_of(void *context, const double x[2], double enough)
+/* V, and beta, at x. */
+static double potential_at(const waves *v, const double x[ANGLES], double beta[MOST_ENTRIES])
 {
-    const valley *const o = context;
-    double g[2], h[3];
+    double value = 0.0;
+
+    for (int a = 0, ab = 0; a < v->angles; a++)
+        for (int b = a; b < v->angles; b++)
+            beta[ab++] = a == b ? 2.0 : 0.0;
+    for (int j = 0; j < v->n; j++) {
+        const int *const k = v->k[j];
+        double y = v->phase[j];
+        for (int a = 0; a < v->angles; a++)
+            y += k[a] * x[a];
+        const double s = v->p[j] * sin(y);
+        value -= s;
+        for (int a = 0, ab = 0; a < v->angles; a++)
+            for (int b = a; b < v->angles; b++)
+                beta[ab++] -= s * k[a] * k[b];
+    }
+    return value;
+}
+
+static double potential(void *context, const double x[ANGLES], double enough)
+{
+    double beta[MOST_ENTRIES];
 
     (void)enough;
-    return o->f(o->v, x, g, h);
+    return potential_at(context, x, beta);
+}
+
+static double least_of_beta(void *context, const double x[ANGLES], double enough)
+{
+    const waves *const v = context;
+    double beta[MOST_ENTRIES];
+
+    (void)enough;
+    potential_at(v, x, beta);
+    return sym_least_eigenvalue(v->angles, beta);
 }
 
 /* The least value of a function on a grid so far, and its place. */
-typedef struct { double value, place[2]; } least;
+typedef struct { double value, place[ANGLES]; } least;
 
-static void keep_least(least *l, double value, const double place[2])
+static void keep_least(least *l, double value, const double place[ANGLES])
 {
     if (value < l->value - ROUNDING) {
         l->value = value;
@@ -70,77 +95,87 @@ typedef struct {
 /* The least places are on the diagonal if they shall be. */
 static survey survey_of(const waves *v, int on_diagonal)
 {
-    const least none = { HUGE_VAL, { PI / 2, PI / 2 } };
+    const least none = { HUGE_VAL, { PI / 2, PI / 2, PI / 2 } };
+    const int finest = v->angles == 3 ? COARSEST_GRID : FINEST_GRID, entries = MOST_ENTRIES;
     survey s = { COARSEST_GRID, none, none, 2.0 };
-    double g[2], h[3];
+    int all = 1;
 
     for (int j = 0; j < v->n; j++) {
-        const int size = abs(v->k[j][0]) + abs(v->k[j][1]);
-        while (s.grid < FINEST_GRID && s.grid < COARSEST_GRID * size / 2)
+        int size = 0;
+        for (int a = 0; a < v->angles; a++)
+            size += abs(v->k[j][a]);
+        while (s.grid < finest && s.grid < COARSEST_GRID * size / 2)
             s.grid += COARSEST_GRID;
     }
-    for (int i = 0; i < s.grid; i++)
-        for (int j = 0; j < s.grid; j++) {
-            const double y[2] = { 2 * PI * (i + 0.5) / s.grid, 2 * PI * (j + 0.5) / s.grid };
-            const double value = value_of_potential(v, y, g, h);
-            const double beta[3] = { 2.0 - h[0], -h[1], 2.0 - h[2] };
-            const double low = sym2_least_eigenvalue(beta);
-            s.largest = fmax(s.largest, beta[0] + beta[2] - low);
-            if (on_diagonal && i != j)
-                continue;
-            keep_least(&s.beta, low, y);
-            keep_least(&s.potential, value, y);
-        }
+    for (int a = 0; a < v->angles; a++)
+        all *= s.grid;
+    for (int i = 0; i < all; i++) {
+        double y[ANGLES] = { 0.0 }, beta[MOST_ENTRIES] = { 0.0 }, minus[MOST_ENTRIES];
+        for (int a = v->angles - 1, rest = i; a >= 0; rest /= s.grid, a--)
+            y[a] = 2 * PI * (rest % s.grid + 0.5) / s.grid;
+        const double value = potential_at(v, y, beta);
+        for (int j = 0; j < entries; j++)
+            minus[j] = -beta[j];
+        s.largest = fmax(s.largest, -sym_least_eigenvalue(v->angles, minus));
+        if (on_diagonal && y[0] != y[1])
+            continue;
+        keep_least(&s.beta, sym_least_eigenvalue(v->angles, beta), y);
+        keep_least(&s.potential, value, y);
+    }
     return s;
 }
 
-/* x = a place where f is least: where Newton's method leads from (pi/2, pi/2), as in 1989, or from
-   the best place of a grid if that is better, or downhill from there if it is not isolated. */
-static void find_least(objective *f, const waves *v, const double best[2], int grid,
-                       int on_diagonal, double x[2])
+/* x = a place where f is least: of two angles where Newton's method, with f's derivatives, leads
+   from (pi/2, pi/2), as in 1989, or from the best place of a grid if that is better; else, or if it
+   is not isolated, downhill from there. */
+static void find_least(function *f, objective *derivatives, const waves *v, const least *best,
+                       int grid, int on_diagonal, double x[ANGLES])
 {
-    double g[2], h[3];
-    const double value = f(v, best, g, h);
+    const int two = v->angles == 2;
 
     x[0] = x[1] = PI / 2;
-    if (!(newton(f, v, x) <= value)) {
-        memcpy(x, best, 2 * sizeof *x);
-        if (!(newton(f, v, x) <= value)) {
-            memcpy(x, best, 2 * sizeof *x);
-            descend(depth_of, &(valley){ f, v }, x, value, PI / grid,
-                    on_diagonal ? DIAGONAL : ANYWHERE);
-        }
+    if (two && newton(derivatives, v, x) <= best->value)
+        return;
+    memcpy(x, best->place, sizeof best->place);
+    if (!two || !(newton(derivatives, v, x) <= best->value)) {
+        memcpy(x, best->place, sizeof best->place);
+        descend(f, (void *)v, v->angles, x, best->value, PI / grid,
+                on_diagonal ? DIAGONAL : ANYWHERE);
     }
     if (on_diagonal)
         x[1] = x[0];
 }
 
-void loewner_lowest(const waves *v, double x[2])
+void loewner_lowest(const waves *v, double x[ANGLES])
 {
     const survey s = survey_of(v, 0);
 
-    find_least(least_eigenvalue_of_beta, v, s.beta.place, s.grid, 0, x);
+    find_least(least_of_beta, least_eigenvalue_of_beta, v, &s.beta, s.grid, 0, x);
 }
 
 /* ---- the place of the least score */
 
 /* Moves x, which has this score, to a place of the least score: from the best place of a grid, or
    from x if that is better. */
-static double find_best(orbits *o, ways where, double value, double x[2])
+static double find_best(orbits *o, ways where, double value, double x[ANGLES])
 {
-    const int places = where == FIRST_ANGLE ? FLAT_PLACES : PLACES;
+    const int angles = o->v->angles, places = PLACES[angles - 1];
     const double step = 2.0 * PI / places;
+    int all = places;
 
-    for (int i = 0; i < places; i++)
-        for (int j = 0; j < (where == ANYWHERE ? places : 1); j++) {
-            const double y[2] = { step * i, step * (where == DIAGONAL ? i : j) };
-            const double at_y = score(o, y, value - GAIN_MIN);
-            if (at_y < value - GAIN_MIN) {
-                value = at_y;
-                memcpy(x, y, sizeof y);
-            }
+    for (int a = 1; a < angles && where == ANYWHERE; a++)
+        all *= places;
+    for (int i = 0; i < all; i++) {
+        double y[ANGLES] = { 0.0 };
+        for (int a = angles - 1, rest = i; a >= 0; rest /= where == ANYWHERE ? places : 1, a--)
+            y[a] = step * (rest % places);
+        const double at_y = score(o, y, value - GAIN_MIN);
+        if (at_y < value - GAIN_MIN) {
+            value = at_y;
+            memcpy(x, y, sizeof y);
         }
-    return descend(score, o, x, value, 0.5 * step, where);
+    }
+    return descend(score, o, angles, x, value, 0.5 * step, where);
 }
 
 /* Makes B - 2 of the waves, which is `excess`, as small as `weaker`. */
@@ -153,9 +188,9 @@ static void weaken(orbits *o, double excess, double weaker)
 }
 
 /* Weakens the waves as little as leaves a large enough score at x, but not below WEAKEST. */
-static void weaken_until_left(orbits *o, double excess, const double x[2])
+static void weaken_until_left(orbits *o, double excess, const double x[ANGLES])
 {
-    const double enough = o->flat ? FLAT_SCORE_LEFT : SCORE_LEFT;
+    const double enough = o->v->angles == 1 ? SCORE_LEFT_OF_ONE : SCORE_LEFT;
     double weaker = fmin(excess, STRONGEST);
 
     for (weaken(o, excess, weaker); weaker >= WEAKEST && score(o, x, enough) < enough;
@@ -164,12 +199,12 @@ static void weaken_until_left(orbits *o, double excess, const double x[2])
 }
 
 /* Moves x off the diagonal if longer orbits judge another place to be better. */
-static void leave_diagonal(orbits *o, double x[2])
+static void leave_diagonal(orbits *o, double x[ANGLES])
 {
-    double value, off[2] = { x[0], x[1] };
+    double value, off[ANGLES] = { x[0], x[1] };
 
     find_best(o, ANYWHERE, HUGE_VAL, off);
-    if (fmax(fabs(off[0] - x[0]), fabs(off[1] - x[1])) < 2.0 * PI / PLACES)
+    if (fmax(fabs(off[0] - x[0]), fabs(off[1] - x[1])) < 2.0 * PI / PLACES[1])
         return; /* it is the same gap */
     o->reach = FAR_REACH;
     o->step = FINE_STEP;
@@ -179,10 +214,10 @@ static void leave_diagonal(orbits *o, double x[2])
 }
 
 /* Moves x to a better place, if there is one.  excess: B - 2 of the waves. */
-static void improve(orbits *o, double excess, int on_diagonal, double x[2])
+static void improve(orbits *o, double excess, int on_diagonal, double x[ANGLES])
 {
-    const ways where = o->flat ? FIRST_ANGLE : on_diagonal ? DIAGONAL : ANYWHERE;
-    double value, y[2] = { x[0], x[1] };
+    const ways where = on_diagonal ? DIAGONAL : ANYWHERE;
+    double value, y[ANGLES] = { x[0], x[1], x[2] };
 
     weaken_until_left(o, excess, x);
     value = score(o, x, HUGE_VAL);
@@ -192,51 +227,10 @@ static void improve(orbits *o, double excess, int on_diagonal, double x[2])
         leave_diagonal(o, x);
 }
 
-/* ---- waves that are all parallel */
-
-static int common_divisor(int a, int b) { return b == 0 ? abs(a) : common_divisor(b, a % b); }
-
-/* Are all k multiples of one primitive q? */
-static int are_parallel(const waves *v, int q[2])
-{
-    const int common = v->n > 0 ? common_divisor(v->k[0][0], v->k[0][1]) : 0;
-
-    for (int i = 0; i < 2 && common > 0; i++)
-        q[i] = v->k[0][i] / common;
-    for (int j = 0; j < v->n; j++)
-        if (v->k[j][0] * q[1] != v->k[j][1] * q[0])
-            return 0;
-    return common > 0;
-}
-
-/* Improves x for waves with k = m q.  The second variation along q of x is that of the angle q.x
-   with waves (m, 0) of |q|^2 the amplitude. */
-static void improve_along(const orbits *o, double excess, const int q[2], double x[2])
-{
-    const waves *const v = o->v;
-    const int size = q[0] * q[0] + q[1] * q[1];
-    const double along = q[0] * x[0] + q[1] * x[1];
-    double y[2] = { along, 0.0 }, p[MOST_WAVES];
-    int k[MOST_WAVES][3] = { { 0 } };
-    const waves of_angle = { v->n, (const int (*)[3])k, v->phase, p };
-    orbits of_it = *o;
-
-    for (int j = 0; j < v->n; j++) {
-        k[j][0] = (v->k[j][0] * q[0] + v->k[j][1] * q[1]) / size;
-        p[j] = v->p[j] * size;
-    }
-    of_it.v = &of_angle;
-    of_it.flat = 1;
-    of_it.step = FINEST_STEP;
-    improve(&of_it, excess, 0, y);
-    for (int i = 0; i < 2; i++)
-        x[i] += (y[0] - along) * q[i] / size;
-}
-
 /* ---- the answer */
 
 /* Do nine points contradict every orbit through x of the weakest waves by a margin? */
-static int is_easy(const waves *weakest, double excess, const double x[2])
+static int is_easy(const waves *weakest, double excess, const double x[ANGLES])
 {
     orbits o = { .v = weakest, .reach = NEAR_REACH, .step = COARSE_STEP };
 
@@ -244,22 +238,19 @@ static int is_easy(const waves *weakest, double excess, const double x[2])
     return score(&o, x, EASY_SCORE) < EASY_SCORE;
 }
 
-void loewner_start(const waves *middle, const waves *weakest, int on_diagonal, double x[2])
+void loewner_start(const waves *middle, const waves *weakest, int on_diagonal, double x[ANGLES])
 {
     const survey s = survey_of(middle, on_diagonal);
     const double excess = s.largest - 2.0;
-    orbits o = { .v = middle, .reach = NEAR_REACH, .step = COARSE_STEP };
-    int q[2] = { 1, 0 };
-    double lowest[2];
+    orbits o = { .v = middle,
+                 .reach = NEAR_REACH,
+                 .step = middle->angles == 1 ? FINEST_STEP : COARSE_STEP };
+    double lowest[ANGLES] = { 0.0 };
 
-    find_least(least_eigenvalue_of_beta, middle, s.beta.place, s.grid, on_diagonal, x);
-    find_least(value_of_potential, middle, s.potential.place, s.grid, on_diagonal, lowest);
-    for (int i = 0; i < 2; i++)
+    find_least(least_of_beta, least_eigenvalue_of_beta, middle, &s.beta, s.grid, on_diagonal, x);
+    find_least(potential, value_of_potential, middle, &s.potential, s.grid, on_diagonal, lowest);
+    for (int i = 0; i < middle->angles; i++)
         x[i] += BETWEEN * (lowest[i] - x[i]);
-    if (is_easy(weakest, excess, x))
-        return;
-    if (are_parallel(middle, q))
-        improve_along(&o, excess, q, x);
-    else
+    if (!is_easy(weakest, excess, x))
         improve(&o, excess, on_diagonal, x);
 }

@@ -24,7 +24,7 @@ static void weigh_waves(batch *w, int k)
 /* Sets the prism of lane k.  The residual is the sum over the waves of the error in wave_at. */
 static void set_lane(batch *w, int k, const loewner_cell *c)
 {
-    double residual[2] = { 0.0, 0.0 };
+    double residual[N] = { 0.0 };
 
     for (int i = 0; i < waves_of(w); i++) {
         put_truth(&w->backward[i], k, c->force[i] < 0);
@@ -34,23 +34,23 @@ static void set_lane(batch *w, int k, const loewner_cell *c)
         put_at(&w->p_low[i], k, c->p_low[i]);
         put_at(&w->err_amp[i], k, c->err_amp[i]);
         double h = 0.0;
-        for (int column = 2; column < w->problem->columns; column++) {
-            const double part = c->part[i][w->problem->axis[column] - 2];
+        for (int column = N; column < w->problem->columns; column++) {
+            const double part = c->part[i][w->problem->axis[column] - T1];
             put_at(&w->part[i][column], k, part);
             h += fabs(part);
         }
         put_at(&w->h[i], k, h);
         put_at(&w->size[i], k, fabs(c->p[i]) + h + c->err_amp[i]);
-        for (int j = 0; j < 2 && i >= FIRST; j++)
+        for (int j = 0; j < N && i >= FIRST; j++)
             residual[j] +=
                 fabs(k_of(w, i)[j]) * (0x1p-59 * (fabs(c->p[i]) + ldexp(1.0, w->problem->coarse)));
     }
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < N; i++) {
         ((uint64_t *)&w->x1[i])[k] = c->x1[i];
         put_at(&w->residual[i], k, residual[i]);
         put_at(&w->width[i], k, c->width[i]);
-        for (int column = 2; column < w->problem->columns; column++)
-            put_at(&w->shift[i][column], k, c->shift[i][w->problem->axis[column] - 2]);
+        for (int column = N; column < w->problem->columns; column++)
+            put_at(&w->shift[i][column], k, c->shift[i][w->problem->axis[column] - T1]);
     }
     put_at(&w->l, k, c->l);
     weigh_waves(w, k);
@@ -100,7 +100,7 @@ static double reach_of(const batch *w, const point *q, int column, int k)
     double most = 0.0;
 
     FOR_WAVES(w, i) {
-        const vec along = dot_k(w, i, q->lin[0][column], q->lin[1][column]);
+        const vec along = dot_k(w, i, q->lin[column]);
         most = fmax(most, at(&w->weight[i], k) * fabs(at(&along, k)));
     }
     return most;
@@ -141,7 +141,7 @@ static int fineness(const batch *w, int k, int column, const cv_cell *cell)
 
     FOR_WAVES(w, i)
         widest = fmax(widest, fabs(at(&w->part[i][column], k)) / at(&w->size[i], k));
-    return column < 2 || ldexp(widest, cuts) <= 1.0 ? cuts : -ilogb(widest);
+    return column < N || ldexp(widest, cuts) <= 1.0 ? cuts : -ilogb(widest);
 }
 
 /* Why the prism of lane k failed: blames a column, and tells what its halves should know.
@@ -240,4 +240,4 @@ static int try_prisms(void *work, const loewner *problem, int n, const cv_cell *
     return CV_OK;
 }
 
-const engine ENGINE = { LANES, sizeof(batch), try_prisms, free_room };
+const engine ENGINE = { N, LANES, sizeof(batch), try_prisms, free_room };

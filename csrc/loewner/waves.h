@@ -1,7 +1,7 @@
 /* waves.h - the waves of the potential, as an engine sees them.
 
-   The slots 0 and 1 are the coordinates themselves, whether there are such waves or not: FIRST is
-   the first slot with an amplitude.
+   The slots below FIRST are the coordinates themselves, whether there are such waves or not: FIRST
+   is the first slot with an amplitude.
 
    Along a wave, lin and quad are k.L and k.T as doubles compute them.  Their roundings, which count
    where coordinates cancel, are the wave's err_dot, and belong to the remainder along the wave.
@@ -17,17 +17,18 @@
 INLINE int waves_of(const batch *w) { return w->problem->waves; }
 INLINE const double *k_of(const batch *w, int wave) { return w->problem->k[wave]; }
 
-/* k.x */
-INLINE vec dot_k(const batch *w, int wave, vec x0, vec x1)
+/* The sum of n products. */
+INLINE vec dot(int n, const double a[], const vec x[])
 {
-    return k_of(w, wave)[0] * x0 + k_of(w, wave)[1] * x1;
+    vec sum = a[0] * x[0];
+
+    for (int i = 1; i < n; i++)
+        sum += a[i] * x[i];
+    return sum;
 }
 
-/* |k|.x */
-INLINE vec dot_abs_k(const batch *w, int wave, vec x0, vec x1)
-{
-    return fabs(k_of(w, wave)[0]) * x0 + fabs(k_of(w, wave)[1]) * x1;
-}
+/* k.x */
+INLINE vec dot_k(const batch *w, int wave, const vec x[N]) { return dot(N, k_of(w, wave), x); }
 
 /* A bound of coordinate i of the sum of k f over the waves, from bounds of f. */
 INLINE vec sum_abs_k(const batch *w, int i, const vec f[])
@@ -39,52 +40,47 @@ INLINE vec sum_abs_k(const batch *w, int i, const vec f[])
     return sum;
 }
 
-/* Bounds of a coordinate along axis i: for the sum of k f over the waves, |R_i.k| |f|, and for a
+/* Bounds of a coordinate along axis i: for the sum of k f over the waves, |O_i.k| |f|, and for a
    vector, from bounds of its coordinates. */
 INLINE vec sum_onto(const batch *w, int i, const vec f[])
 {
     vec sum = every(0.0);
 
     FOR_WAVES(w, j)
-        sum += w->problem->onto[i][j] * f[j];
+        sum += w->problem->onto[j][i] * f[j];
     return sum;
 }
 
-INLINE vec onto_axis(const batch *w, int i, const vec x[2])
+INLINE vec onto_axis(const batch *w, int i, const vec x[N])
 {
-    const double *const axis = w->problem->axes[i];
-
-    return fabs(axis[0]) * x[0] + fabs(axis[1]) * x[1];
+    return dot(N, w->problem->axes[i], x);
 }
 
-/* R m R'/|k|^2, of a symmetric matrix m. */
-INLINE void along_axes(const batch *w, vec turned[3], const vec m[3])
+/* O m O', of a symmetric matrix m. */
+INLINE void along_axes(const batch *w, vec turned[ENTRIES], const vec m[ENTRIES])
 {
-    const double *const turn = w->problem->turn;
-
-    turned[0] = turn[0] * m[0] + 2.0 * turn[1] * m[1] + turn[2] * m[2];
-    turned[1] = turn[1] * (m[2] - m[0]) + turn[3] * m[1];
-    turned[2] = turn[2] * m[0] - 2.0 * turn[1] * m[1] + turn[0] * m[2];
+    for (int i = 0; i < ENTRIES; i++)
+        turned[i] = dot(ENTRIES, w->problem->turn[i], m);
 }
 
-/* A bound of the remainder of D along a wave: k.r = sum of (R_i.k) (R_i.r)/|R_i|^2. */
+/* A bound of the remainder of D along a wave: k.r = sum of (O_i.k) (O_i.r). */
 INLINE vec rem_along(const batch *w, const point *q, int wave)
 {
-    const double *const along = w->problem->along[wave];
-    const vec rem = along[0] * q->rem[0] + along[1] * q->rem[1];
+    const vec rem = dot(N, w->problem->onto[wave], q->rem);
 
-    return wave < 2 ? rem : rem + q->err_dot[wave];
+    return wave < FIRST ? rem : rem + q->err_dot[wave];
 }
 
-/* k.L and k.T lose u to each product and u to the sum: 2 u of the absolute values, which the
-   coordinates' lin_bound and quad_bound bound. */
+/* k.L and k.T lose u to each product and u to each of N - 1 sums: N u of the absolute values, which
+   the coordinates' lin_bound and quad_bound bound.  err_dot has 2 N u. */
 INLINE void bound_err_dot(const batch *w, point *q)
 {
-    const vec size0 = q->lin_bound[0] + q->quad_bound[0];
-    const vec size1 = q->lin_bound[1] + q->quad_bound[1];
-
-    for (int j = 2; j < waves_of(w); j++)
-        q->err_dot[j] = 0x1p-51 * dot_abs_k(w, j, size0, size1);
+    FOR_WAVES(w, j) {
+        vec sum = every(0.0);
+        for (int i = 0; i < N; i++)
+            sum += fabs(k_of(w, j)[i]) * (q->lin_bound[i] + q->quad_bound[i]);
+        q->err_dot[j] = N * 0x1p-52 * sum;
+    }
 }
 
 /* How many u the waves make of a number that is rounded twelve times at most for each of them, and
@@ -94,9 +90,11 @@ INLINE double grain_of(const batch *w) { return 0x1p-53 * (double)(12 + waves_of
 /* The angle of a wave at q->x. */
 INLINE mask angle_of(const batch *w, const point *q, int wave)
 {
-    const uint64_t *const k = w->problem->turns.k[wave];
+    mask angle = w->problem->turns.phase[wave] - none();
 
-    return k[0] * q->x[0] + k[1] * q->x[1] + w->problem->turns.phase[wave];
+    for (int i = 0; i < N; i++)
+        angle += w->problem->turns.k[wave][i] * q->x[i];
+    return angle;
 }
 
 /* Sine and cosine of a wave at q->x, and what it adds to the step from there.
@@ -114,32 +112,36 @@ INLINE void wave_at(const batch *w, point *q, int wave)
     q->cosine[wave] = sine_of(c);
     const mask negative = sign_of(c), size = high_of(w->force[wave], with_sign(c, negative) << 1);
     const mask force = with_sign(size, negative ^ w->backward[wave]) << w->problem->coarse;
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < N; i++)
         q->push[i] += w->problem->turns.k[wave][i] * force;
 }
 
 /* The waves at q->x, beta, and its errors.
 
-   Let N be the number of waves, S the sum of (|k0| + |k1|)^2 times their sizes.  p sin and p cos
-   are off by 5.1 u |p|; in beta such a product is multiplied by k k', rounded once more, and N are
-   added, and taken from an integer: beta is off by u (3 + (7 + N) S) at most, where err_beta is
-   (14 + N) u (1 + S). */
+   Let there be W waves, S the sum of |k|^2 times their sizes, |k| the sum of the |k[i]|.  p sin and
+   p cos are off by 5.1 u |p|; in beta such a product is multiplied by k[a] k[b], rounded once more,
+   and W are added, and taken from 2 or 0.  So its element a, b is off by u (3 + (7 + W) s) at most,
+   where a = b, and else by u (7 + W) s, with the sum s of |k[a] k[b]| times the sizes.  err_beta is
+   (12 + N + W) u (1 + S). */
 INLINE void evaluate(const batch *w, point *q)
 {
-    vec pull[3] = { every(0.0), every(0.0), every(0.0) }, sizes = every(1.0);
+    vec pull[ENTRIES], sizes = every(1.0);
 
-    q->push[0] = q->push[1] = none();
+    for (int i = 0; i < ENTRIES; i++)
+        pull[i] = every(0.0);
+    for (int i = 0; i < N; i++)
+        q->push[i] = none();
     FOR_WAVES(w, j) {
-        const double k0 = k_of(w, j)[0], k1 = k_of(w, j)[1];
         wave_at(w, q, j);
         const vec s = w->p[j] * q->sine[j];
-        pull[0] += k0 * k0 * s;
-        pull[1] += k0 * k1 * s;
-        pull[2] += k1 * k1 * s;
+        for (int a = 0, ab = 0; a < N; a++)
+            for (int b = a; b < N; b++)
+                pull[ab++] += k_of(w, j)[a] * k_of(w, j)[b] * s;
         sizes += w->problem->square_k[j] * w->size[j];
     }
-    for (int i = 0; i < 3; i++)
-        q->beta[i] = (i == 1 ? 0.0 : 2.0) - pull[i];
+    for (int a = 0, ab = 0; a < N; a++)
+        for (int b = a; b < N; b++, ab++)
+            q->beta[ab] = (a == b ? 2.0 : 0.0) - pull[ab];
     q->err_beta = grain_of(w) * sizes;
 }
 
@@ -151,7 +153,7 @@ INLINE void evaluate(const batch *w, point *q)
 static void propagate(const batch *w, point *next, const point *q, const point *o)
 {
     const int columns = w->problem->columns, pairs = columns * (columns + 1) / 2;
-    vec lin[2][COLUMNS], quads[2][PAIRS];
+    vec lin[COLUMNS][N], quads[PAIRS][N];
 
     memset(lin, 0, sizeof lin);
     memset(quads, 0, sizeof quads);
@@ -159,40 +161,40 @@ static void propagate(const batch *w, point *next, const point *q, const point *
         const vec pull = -w->p[j] * q->sine[j], half = 0.5 * w->p[j] * q->cosine[j];
         vec c[COLUMNS], f[COLUMNS], push[COLUMNS];
         for (int k = 0; k < columns; k++) {
-            c[k] = dot_k(w, j, q->lin[0][k], q->lin[1][k]);
+            c[k] = dot_k(w, j, q->lin[k]);
             f[k] = -half * c[k];
             push[k] = pull * c[k];
         }
         add_moves(w, j, -q->sine[j], f);
         add_moves(w, j, q->cosine[j], push);
         for (int k = 0, kl = 0; k < columns; k++) {
-            for (int i = 0; i < 2; i++)
-                lin[i][k] += k_of(w, j)[i] * push[k];
+            for (int i = 0; i < N; i++)
+                lin[k][i] += k_of(w, j)[i] * push[k];
             for (int l = k; l < columns; l++, kl++) {           /* (c.e) (f.e) */
                 const vec cf = l == k ? c[k] * f[k] : c[k] * f[l] + c[l] * f[k];
-                const vec quad = cf + pull * dot_k(w, j, q->quad[0][kl], q->quad[1][kl]);
-                for (int i = 0; i < 2; i++)
-                    quads[i][kl] += k_of(w, j)[i] * quad;
+                const vec quad = cf + pull * dot_k(w, j, q->quad[kl]);
+                for (int i = 0; i < N; i++)
+                    quads[kl][i] += k_of(w, j)[i] * quad;
             }
         }
     }
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < N; i++) {
         for (int k = 0; k < columns; k++)
-            next->lin[i][k] = (2.0 * q->lin[i][k] - o->lin[i][k]) + lin[i][k];
+            next->lin[k][i] = (2.0 * q->lin[k][i] - o->lin[k][i]) + lin[k][i];
         for (int kl = 0; kl < pairs; kl++)
-            next->quad[i][kl] = (2.0 * q->quad[i][kl] - o->quad[i][kl]) + quads[i][kl];
+            next->quad[kl][i] = (2.0 * q->quad[kl][i] - o->quad[kl][i]) + quads[kl][i];
     }
 }
 
 /* What that loses of a wave to roundings: p sin, its products with c and T, with k, and sums over
-   the N waves (8 + N) u |p| of their sizes, h cos y (4 + N) u h; and p times err_dot, as the map
+   the W waves (8 + W) u |p| of their sizes, h cos y (4 + W) u h; and p times err_dot, as the map
    has k.L where propagate has c. */
 INLINE vec propagate_err(const batch *w, const point *q, int wave)
 {
     const vec p = mag(w->p[wave]), unit = every(grain_of(w));
     const vec lost = unit * (p * (q->lin_bound[wave] + q->quad_bound[wave]) + w->h[wave]);
 
-    return wave < 2 ? lost : lost + p * q->err_dot[wave];
+    return wave < FIRST ? lost : lost + p * q->err_dot[wave];
 }
 
 /* Minus the gradient of n.beta n at a site. */
@@ -201,7 +203,7 @@ INLINE vec gradient(const batch *w, const point *q, int i)
     vec sum = every(0.0);
 
     FOR_WAVES(w, j)
-        sum += k_of(w, j)[i] * (square(dot_k(w, j, q->n[0], q->n[1])) * w->p[j] * q->cosine[j]);
+        sum += k_of(w, j)[i] * (square(dot_k(w, j, q->n)) * w->p[j] * q->cosine[j]);
     return sum;
 }
 
@@ -210,8 +212,13 @@ INLINE vec gradient(const batch *w, const point *q, int i)
 INLINE vec weights_of(const batch *w, const vec omega[], const vec m[])
 {
     const double most = w->problem->most_k;
+    vec squares = omega[0], sizes = mag(m[0]);
 
-    return most * most * (omega[0] + omega[1]) + most * (mag(m[0]) + mag(m[1]));
+    for (int i = 1; i < N; i++) {
+        squares += omega[i];
+        sizes += mag(m[i]);
+    }
+    return most * most * squares + most * sizes;
 }
 
 #endif

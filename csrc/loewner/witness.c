@@ -4,7 +4,6 @@
    beta - 1/d[j] of the Loewner bounds leads to a d[j] that is not above l.  Past and future have
    the same recursion.  n is chosen for the orbit of the prism's centre and then kept.  Nothing
    rigorous rests on it. */
-#include "arith/sym2.h"
 #include "prism.h"
 
 /* Before the end of an orbit a block falls only below 0.75 l, so that (1) is not next to zero. */
@@ -15,17 +14,20 @@ static const double FALL_RATIO = 0.75;
 typedef struct {
     int site, last;
     mask begin, end, going, fell, fall; /* fall: where it fell, in the lanes that fell */
-    vec d[3];
+    vec d[ENTRIES];
 } recursion;
 
 INLINE recursion recursion_of(const batch *w, int way, mask active, mask begin, mask end)
 {
-    return (recursion){ .site = extreme(active, begin, -way),
-                        .last = extreme(active, end, way),
-                        .begin = begin,
-                        .end = end,
-                        .going = active,
-                        .d = { 1.0 / w->l, every(0.0), 1.0 / w->l } };
+    recursion r = { .site = extreme(active, begin, -way),
+                    .last = extreme(active, end, way),
+                    .begin = begin,
+                    .end = end,
+                    .going = active };
+
+    for (int i = 0; i < N; i++)
+        r.d[sym_at(N, i, i)] = 1.0 / w->l;
+    return r;
 }
 
 /* One site further.  0: there is none. */
@@ -33,18 +35,18 @@ INLINE int advance(batch *w, recursion *r, int way)
 {
     const uint64_t site = (uint64_t)r->site;
     point *const q = site_of(w, r->site);
-    vec *const blocks = way > 0 ? q->left : q->right, next[3];
+    vec *const blocks = way > 0 ? q->left : q->right, next[ENTRIES];
     mask now, falls;
 
     if (!any(r->going) || r->site == r->last + way)
         return 0;
     now = r->going & (way > 0 ? TRUTH(r->begin <= site) : TRUTH(r->begin >= site));
-    sym2_subtract_inverse(next, q->beta, r->d);
-    for (int k = 0; k < 3; k++) {
+    sym_subtract_inverse(N, next, q->beta, r->d);
+    for (int k = 0; k < ENTRIES; k++) {
         r->d[k] = pick(now, next[k], r->d[k]);
         blocks[k] = pick(now, next[k], blocks[k]);
     }
-    falls = now & ~sym2_is_above(r->d, pick(TRUTH(r->end == site), w->l, FALL_RATIO * w->l));
+    falls = now & ~sym_is_above(N, r->d, pick(TRUTH(r->end == site), w->l, FALL_RATIO * w->l));
     r->fall = choose(falls, site - none(), r->fall);
     r->fell |= falls;
     r->going &= ~falls & ~TRUTH(r->end == site);
@@ -85,8 +87,8 @@ static mask choose_ends(batch *w, mask active, mask *low, mask *high)
     *high = left.fall;
     *low = right.fall;
     const mask apart = active & (~right.fell | TRUTH(right.fall > left.fall));
-    const mask at_right =
-        apart & right.fell & TRUTH(sym2_least_eigenvalue(right.d) < sym2_least_eigenvalue(left.d));
+    const mask at_right = apart & right.fell &
+                          TRUTH(sym_least_eigenvalue(N, right.d) < sym_least_eigenvalue(N, left.d));
     const mask at_left = apart & ~at_right;
     if (any(at_left)) {
         last = choose(at_left, *high, last);
@@ -109,39 +111,41 @@ static mask choose_ends(batch *w, mask active, mask *low, mask *high)
 
 /* The site of the least beta between low and high.  n becomes the eigenvector of the quadratic form
    that is left there when all other sites are eliminated. */
-static mask site_of_least(const batch *w, mask active, mask low, mask high, vec n[2])
+static mask site_of_least(const batch *w, mask active, mask low, mask high, vec n[N])
 {
-    vec form[3] = { every(0.0), every(0.0), every(0.0) }, value = every(HUGE_VAL);
+    vec form[ENTRIES], value = every(HUGE_VAL);
     mask site = low;
 
+    memset(form, 0, sizeof form);
     for (int j = extreme(active, low, -1); j <= extreme(active, high, 1); j++) {
         const uint64_t here = (uint64_t)j;
         const point *const q = site_of(w, j);
         const mask better = TRUTH(low <= here) & TRUTH(here <= high) & TRUTH(q->least < value);
         value = pick(better, q->least, value);
         site = choose(better, here - none(), site);
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < ENTRIES; k++)
             form[k] = pick(better, q->left[k] + q->right[k] - q->beta[k], form[k]);
     }
-    least_eigenvector(form, n);
+    sym_least_eigenvector(N, form, n);
     return site;
 }
 
 /* Sets n from that site to `to`, way 1, or to `from`, -1: n = n / d outwards, and zero beyond. */
-static void spread(batch *w, int way, mask active, mask site, const vec top[2])
+static void spread(batch *w, int way, mask active, mask site, const vec top[N])
 {
     const int last = extreme(active, way > 0 ? w->until : w->since, way);
-    vec n[2] = { every(0.0), every(0.0) };
+    vec n[N];
 
+    memset(n, 0, sizeof n);
     for (int j = extreme(active, site, -way); j != last + way; j += way) {
         const uint64_t here = (uint64_t)j;
         point *const q = site_of(w, j);
         const mask start = TRUTH(here == site);
         const mask beyond = way > 0 ? TRUTH(here > site) : TRUTH(here < site);
         const mask own = way > 0 ? TRUTH(here <= w->to) : TRUTH(here >= w->from);
-        vec next[2];
-        sym2_solve(next, way > 0 ? q->right : q->left, n);
-        for (int i = 0; i < 2; i++) {
+        vec next[N];
+        sym_solve(N, next, way > 0 ? q->right : q->left, n);
+        for (int i = 0; i < N; i++) {
             n[i] = pick(start, top[i], pick(beyond & own, next[i], every(0.0)));
             q->n[i] = pick(active & (start | beyond), n[i], q->n[i]);
         }
@@ -153,7 +157,7 @@ static void spread(batch *w, int way, mask active, mask site, const vec top[2])
 static mask witness(batch *w, mask active)
 {
     mask low, high;
-    vec top[2];
+    vec top[N];
 
     active = choose_ends(w, active, &low, &high);
     if (!any(active))

@@ -122,8 +122,8 @@ int patch_read(patch *p, const cv_problem *given)
 {
     int status = CV_OK;
 
-    if (given->n_angles != 2 || given->n_waves < 1 || given->n_waves > MOST_WAVES ||
-        given->n_parameters < 0 || given->n_parameters > PARAMETERS)
+    if (given->n_angles < 1 || given->n_angles > ANGLES || given->n_waves < 1 ||
+        given->n_waves > MOST_WAVES || given->n_parameters < 0 || given->n_parameters > PARAMETERS)
         return CV_EARGUMENT;
     p->n_angles = given->n_angles;
     p->n_waves = given->n_waves;

@@ -6,12 +6,12 @@
 
 /* V(y) = -sum of p[j] sin(k[j].y + phase[j]), phases in radians. */
 typedef struct {
-    int n;
+    int angles, n;
     const int (*k)[3];
     const double *phase, *p;
 } waves;
 
-/* A function at x, with its gradient g and Hessian h (00, 01, 11). */
+/* A function of two angles at x, with its gradient g and Hessian h (00, 01, 11). */
 typedef double objective(const waves *v, const double x[2], double g[2], double h[3]);
 
 objective value_of_potential;           /* V */

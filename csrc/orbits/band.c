@@ -4,11 +4,13 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "arith/sym2.h"
+#include "arith/sym.h"
 #include "converse.h"
 #include "orbits.h"
 
 typedef double mat[2][2];               /* two columns */
+
+static inline double sym2_det(const double d[3]) { return d[0] * d[2] - d[1] * d[1]; }
 
 static inline void sym2_inverse(double r[3], const double d[3])
 {
@@ -157,7 +159,7 @@ long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (
         double moved = 0.0;
         for (long j = 0; j < q; j++) {
             double next[3], change = 0.0;
-            sym2_subtract_inverse(next, beta[j], here);
+            sym_subtract_inverse(2, next, beta[j], here);
             if (sym2_negative(next) != 0)
                 return -round;
             for (int i = 0; i < 3; i++)

@@ -36,7 +36,7 @@ typedef struct {
 
     /* A starting point from which the proof is short, and the decimal places to which it is
        rounded.  On the diagonal, if it may be, where V is symmetric about it. */
-    void (*choose_start)(const patch *p, int symmetric, double x[2]);
+    void (*choose_start)(const patch *p, int symmetric, double x[ANGLES]);
     int start_places;
 
     int least_digits;       /* the region is converted with at least this number of places */

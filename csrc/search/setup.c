@@ -35,7 +35,7 @@ static int choose_xstar(const cv_search *s, apm_t xstar[ANGLES])
 {
     const long places = s->method->start_places;
     int status = CV_OK;
-    double start[ANGLES];
+    double start[ANGLES] = { 0.0 };
     apm_t half;
 
     s->method->choose_start(&s->problem, s->symmetric, start);

@@ -17,7 +17,7 @@ static int thesis_accepts(const patch *p, const precision *how)
     return thesis_parameters(p) && has_plain_region(p) ? CV_OK : CV_EARGUMENT;
 }
 
-static void thesis_choose_start(const patch *p, int symmetric, double x[2])
+static void thesis_choose_start(const patch *p, int symmetric, double x[ANGLES])
 {
     double abc[MOST_WAVES];
 

@@ -16,7 +16,7 @@ static void find_start(objective *f, double x[2], const double p[3], int on_diag
 {
     static const int k[3][3] = { { 1, 0 }, { 0, 1 }, { 1, 1 } };
     static const double phase[3] = { 0.0, 0.0, 0.0 };
-    const waves v = { 3, k, phase, p };
+    const waves v = { 2, 3, k, phase, p };
     double best[2] = { PI / 2, PI / 2 }, g[2], h[3], least = HUGE_VAL, value;
 
     x[0] = x[1] = PI / 2;

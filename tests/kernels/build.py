@@ -65,13 +65,14 @@ def units(sources, csrc):
 
 def _attributes(csrc, name, text):
     """The text with the attributes that clang gives to the functions of an engine."""
-    source = (csrc / (name + ".c")).read_text("utf-8")
-    push = re.search("^#pragma clang attribute push.*$", source, re.MULTILINE)
+    source, lanes = csrc / "loewner" / "engine.inc", re.fullmatch(r"loewner/engine_(.)_.", name)
+    push = lanes and re.search("LANES == %s.*\n(#pragma clang attribute push.*)$" % lanes[1],
+                               source.read_text("utf-8"), re.MULTILINE)
     if push is None:
         return text + "\n"
     return ("#ifdef __clang__\n%s\n#endif\n%s\n"
             "#ifdef __clang__\n#pragma clang attribute pop\n#endif\n"
-            % (push.group(), text))
+            % (push[1], text))
 
 
 def compile_unit(name, text, directory, csrc, flags):

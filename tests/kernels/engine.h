@@ -52,7 +52,7 @@ static void disturb(batch *w, mask active)
     sums t;
 
     for (int j = begin_of(w, active) + 1; j < end_of(w, active); j++)
-        for (int i = 0; i < 2; i++)
+        for (int i = 0; i < N; i++)
             site_of(w, j)->mu[i] *= 1.0 + 0x1p-20 * (double)(j % 3 - 1);
     sum_up(w, &t, active);
     leave_exactly(w, &t, active);
@@ -63,7 +63,7 @@ static void disturb(batch *w, mask active)
 }
 
 static int bound_root(void *work, int signs, double *bound, double *l, double *rounding, int *first,
-                      double n[][2], int most)
+                      double n[][ANGLES], int most)
 {
     enum { K = LANES - 1 };
     batch *const w = work;
@@ -74,7 +74,7 @@ static int bound_root(void *work, int signs, double *bound, double *l, double *r
     if (!holds(&active, K) || to - from >= most)
         return 0;
     for (int j = from; j <= to && signs == 3; j++)
-        for (int i = 0; i < 2; i++)
+        for (int i = 0; i < N; i++)
             site_of(w, j)->n[i] *= 0x1p-300;
     bound_second_variation(w, active, signs == 1);
     if (signs == 2)
@@ -83,7 +83,7 @@ static int bound_root(void *work, int signs, double *bound, double *l, double *r
     *rounding = at(&w->rounding, K);
     *first = from - ORIGIN;
     for (int j = from; j <= to; j++)
-        for (int i = 0; i < 2; i++)
+        for (int i = 0; i < N; i++)
             n[j - from][i] = at(&site_of(w, j)->n[i], K);
     return to - from + 1;
 }
@@ -101,28 +101,28 @@ static void look_root(const void *work, int n, known_point *p)
     const int columns = w->problem->columns, *const axis = w->problem->axis;
 
     memset(p, 0, sizeof *p);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < N; i++) {
         const uint64_t x = ((const uint64_t *)&q->x[i])[LANES - 1];
         p->x[i] = (double)(x >> 32);
         p->x_low[i] = (double)(x & UINT32_MAX);
     }
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < N; i++)
         for (int k = 0, kl = 0; k < columns; k++) {
-            copy(&p->lin[i][axis[k]], &q->lin[i][k], 1);
+            copy(&p->lin[i][axis[k]], &q->lin[k][i], 1);
             for (int l = k; l < columns; l++)
-                copy(&p->quad[i][pair(COLUMNS, axis[k], axis[l])], &q->quad[i][kl++], 1);
+                copy(&p->quad[i][sym_at(MOST_COLUMNS, axis[k], axis[l])], &q->quad[kl++][i], 1);
         }
-    copy(p->rem, q->rem, 2);
+    copy(p->rem, q->rem, N);
     copy(p->lin_bound, q->lin_bound, waves_of(w));
     copy(p->quad_bound, q->quad_bound, waves_of(w));
     copy(p->nonlin_bound, q->nonlin_bound, waves_of(w));
     copy(p->rad, q->rad, waves_of(w));
-    copy(p->residual, w->residual, 2);
-    copy(p->force, q->force, 2);
-    copy(p->beta, q->beta, 3);
-    copy(p->d, q->d, 3);
+    copy(p->residual, w->residual, N);
+    copy(p->force, q->force, N);
+    copy(p->beta, q->beta, ENTRIES);
+    copy(p->d, q->d, ENTRIES);
     copy(&p->err_beta, &q->err_beta, 1);
-    copy(p->mu, q->mu, 2);
+    copy(p->mu, q->mu, N);
 }
 
 static void sincos_of(uint64_t turns, int64_t *sine, int64_t *cosine, double y[])
@@ -157,7 +157,7 @@ static void pull_of(void *work, const loewner *problem, uint64_t turns, const do
     for (int k = 0; k < LANES; k++)
         set_lane(w, k, &c);
     q.x[0] = turns - none();
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < N && i < 2; i++) {
         q.n[i] = every(n_mu[i]);
         q.mu[i] = every(n_mu[2 + i]);
     }

@@ -4,12 +4,16 @@
 
 #include "loewner/problem.h"
 
+enum { MOST_PAIRS = MOST_COLUMNS * (MOST_COLUMNS + 1) / 2 };
+
 /* What is known of a point.  x: the upper halves of its angles, in 2^-32 turns; x_low: the lower
-   ones, in 2^-64.  The columns: x0's five, then x1's. */
+   ones, in 2^-64.  lin, quad: of each angle; columns in the order of a cell's axes. */
 typedef struct {
-    double x[2], x_low[2], lin[2][COLUMNS], quad[2][PAIRS], rem[2];
+    double x[ANGLES], x_low[ANGLES], lin[ANGLES][MOST_COLUMNS], quad[ANGLES][MOST_PAIRS];
+    double rem[ANGLES];
     double lin_bound[SLOTS], quad_bound[SLOTS], nonlin_bound[SLOTS], rad[SLOTS];
-    double residual[2], force[2], beta[3], d[3], err_beta, mu[2];
+    double residual[ANGLES], force[ANGLES], beta[MOST_ENTRIES], d[MOST_ENTRIES], err_beta;
+    double mu[ANGLES];
 } known_point;
 
 typedef struct {
@@ -23,7 +27,7 @@ typedef struct {
        is, the l it was made with, how much of it roundings are, and the vectors n from the first to
        the last site; their number, 0 without a witness. */
     int (*bound)(void *work, int signs, double *bound, double *l, double *rounding, int *first,
-                 double n[][2], int most);
+                 double n[][ANGLES], int most);
 
     /* What is known of point n of this orbit.  mu: after bound, and only where it is not zero. */
     void (*look)(const void *work, int n, known_point *p);
@@ -39,12 +43,6 @@ typedef struct {
     /* n times x, in the blocks of bound.c. */
     double (*sum)(int n, double x);
 } hooks;
-
-#ifdef __x86_64__
-#define ENGINES(X) X(engine_2) X(engine_4) X(engine_8)
-#else
-#define ENGINES(X) X(engine_2)
-#endif
 
 #define DECLARE(engine) extern const hooks hooks_##engine;
 ENGINES(DECLARE)

@@ -57,13 +57,14 @@ static int follow_to(loewner *w, double n) { return follow(w, fmin(n, 0.0), fmax
 /* What is known of a point, of so many slots: returns where it ends. */
 static double *show(double *y, const known_point *p, int slots)
 {
+    double lin[2][5], quad[2][15];
     const struct {
         const double *from;
         int count;
     } parts[] = {
         { p->x, 2 },
-        { p->lin[0], 10 },
-        { p->quad[0], 30 },
+        { lin[0], 10 },
+        { quad[0], 30 },
         { p->rem, 2 },
         { p->lin_bound, slots },
         { p->quad_bound, slots },
@@ -78,6 +79,12 @@ static double *show(double *y, const known_point *p, int slots)
         { p->x_low, 2 },
     };
 
+    for (int i = 0; i < 2; i++)
+        for (int k = 0, kl = 0; k < 5; k++) {
+            lin[i][k] = p->lin[i][k];
+            for (int l = k; l < 5; l++)
+                quad[i][kl++] = p->quad[i][sym_at(MOST_COLUMNS, k, l)];
+        }
     for (size_t j = 0; j < sizeof parts / sizeof *parts; j++) {
         memcpy(y, parts[j].from, (size_t)parts[j].count * sizeof *y);
         y += parts[j].count;
@@ -140,7 +147,7 @@ static int k_cell(const request *r, double y[])
     const int good = loewner_prism(r->w, &cell, &prism);
 
     show_x1(&prism, y, y + 22);
-    memcpy(y + 2, prism.width, sizeof prism.width);
+    memcpy(y + 2, prism.width, 2 * sizeof *prism.width);
     for (int j = 0; j < 3; j++) {
         const int slot = slot_of(r->w, j);
         if (slot < 0)
@@ -164,8 +171,8 @@ static int k_shifted(const request *r, double y[])
     const int good = loewner_prism(r->w, &cell, &prism);
 
     show_x1(&prism, y, y + 16);
-    memcpy(y + 2, prism.width, sizeof prism.width);
-    memcpy(y + 4, prism.shift, sizeof prism.shift);
+    memcpy(y + 2, prism.width, 2 * sizeof *prism.width);
+    memcpy(y + 4, prism.shift, 2 * sizeof *prism.shift);
     y[10] = r->w->columns;
     for (int axis = 0; axis < 5; axis++)
         y[11 + axis] = cut_helps(r->w, &cell, axis);
@@ -206,14 +213,15 @@ static int k_step(const request *r, double y[])
    much of the bound roundings are, the vectors n. */
 static int bound_orbit(const request *r, int signs, double y[])
 {
-    double n[SITES][2] = { { 0.0, 0.0 } };
+    double n[SITES][ANGLES] = { { 0.0 } };
     int first = 0;
 
     if (!follow(r->w, r->more[0], r->more[1]))
         return 0;
     y[3] = hooks_of(r->w)->bound(r->w->work, signs, &y[0], &y[1], &y[4], &first, n, SITES);
     y[2] = first;
-    memcpy(y + 5, n, sizeof n);
+    for (int j = 0; j < SITES; j++)
+        memcpy(y + 5 + 2 * j, n[j], 2 * sizeof n[j][0]);
     return 1;
 }
 

@@ -285,7 +285,7 @@ static int torus(long dp, apm_t in[], apm_t out[])
     if (!parameter_ranges(in, waves))
         return CV_EARGUMENT;
     for (int which = 0; which < 2 && status == APM_OK; which++)
-        status = apm_set_d(out[which], torus_largest(3, waves, which));
+        status = apm_set_d(out[which], torus_largest(2, 3, waves, which));
     return code_of(status);
 }
 

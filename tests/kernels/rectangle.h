@@ -9,6 +9,6 @@ double torus_rectangle(int n, const torus_wave waves[], int which, const double 
 
     for (int i = 0; i < n; i++)
         all[i] = 1;
-    const surface q = surface_of(n, waves, all, which, NULL);
+    const surface q = surface_of(2, n, waves, all, which, NULL);
     return just_above(over(&q, low, high, &middle) + (which == TORUS_TRACE ? 4.0 : 2.0));
 }

@@ -62,13 +62,14 @@ def inside(rng, prism):
 
 
 def axes_of(prism):
-    """The rows in which remainders are bounded, k of the wave that bends most and k_perp; and of
-    each wave its products with these over |k|^2."""
+    """The axes in which remainders are bounded, of length 1, along k of the wave that bends most
+    and k_perp; and of each wave the sizes of its products with these."""
     waves = (1, 0), (0, 1), (1, 1)
     bends = [(abs(p) + h) * sum(k) for k, p, h in zip(waves, prism[:3], prism[5:8])]
     k = waves[bends.index(max(bends))]
-    axes = k, (-k[1], k[0])
-    return axes, [[abs(mp(i * w[0] + j * w[1])) / sum(k) for i, j in axes] for w in waves]
+    length = mpmath.sqrt(sum(k))
+    axes = (k[0] / length, k[1] / length), (-k[1] / length, k[0] / length)
+    return axes, [[abs(i * w[0] + j * w[1]) for i, j in axes] for w in waves]
 
 
 def orbit(point, star, first, last):
@@ -456,8 +457,8 @@ def residual(p, q, o, following, i):
 
 def turned(axes, m):
     """A symmetric matrix along the axes."""
-    return [sum(u[i] * v[j] * m[i + j] for i in range(2) for j in range(2)) / mp(
-        u[0] ** 2 + u[1] ** 2) for u, v in ((axes[0], axes[0]), axes, (axes[1], axes[1]))]
+    return [sum(u[i] * v[j] * m[i + j] for i in range(2) for j in range(2))
+            for u, v in ((axes[0], axes[0]), axes, (axes[1], axes[1]))]
 
 
 def step_margins(prism, q, o, following, is_first):
@@ -467,10 +468,12 @@ def step_margins(prism, q, o, following, is_first):
     if not is_first:
         det = o.d[0] * o.d[2] - o.d[1] ** 2
         inverse = [o.d[2] / det, -o.d[1] / det, o.d[0] / det]
-        condition = (o.d[0] * o.d[2] + o.d[1] ** 2) / det
+        condition = o.d[0] * o.d[2] / det
         rounded = 8 * UNIT * (inverse[0] + inverse[2]) * (1 + condition)
-        bracket = [x - y - z for x, y, z in zip(turned(q.axes, q.beta), inverse, q.d)]
-        yield "rounded", max(map(abs, bracket)), 2 * q.err_beta + rounded
+        first, mixed, second = turned(q.axes, q.beta)       # the core's second axis may point back
+        bracket = min(max(abs(x - y - z) for x, y, z in zip((first, way, second), inverse, q.d))
+                      for way in (mixed, -mixed))
+        yield "rounded", bracket, 2 * q.err_beta + rounded
     off, unit = 2 * UNIT, grain_of(prism)
     bent, source, err = [], [], []
 
