@@ -10,7 +10,7 @@ from typing import List, Optional, Tuple
 
 from ..model.exact import decimal_text
 from ..model.map import HIGHEST
-from ..model.problem import Problem, bezout, rows
+from ..model.problem import Problem, rows
 from ..storage.files import ConverseError
 from ..version import __version__
 from .settings import Settings
@@ -217,9 +217,11 @@ class OneAngle:
         return decimal_text(sum(a * Fraction(b) for a, b in zip(self.q, x)))
 
     def point(self, s):
-        """Two decimals x with q.x = s."""
-        return tuple(str(Decimal(a) * Decimal(s))
-                     for a in ((1, 1) if abs(sum(self.q)) == 1 == max(self.q) else bezout(*self.q)))
+        """Two decimals x with q.x = s, the same where q is a coordinate."""
+        a, b = self.q
+        x = a + b if 0 in self.q else pow(a, -1, abs(b))
+        y = x if 0 in self.q else (1 - x * a) // b
+        return str(x * Decimal(s)), str(y * Decimal(s))
 
 
 def native_problem(problem, owners, one=None):

@@ -117,7 +117,7 @@ static survey survey_of(const waves *v, int on_diagonal)
         for (int j = 0; j < entries; j++)
             minus[j] = -beta[j];
         s.largest = fmax(s.largest, -sym_least_eigenvalue(v->angles, minus));
-        if (on_diagonal && y[0] != y[1])
+        if (on_diagonal && (y[0] != y[1] || (v->angles == 3 && y[0] != y[2])))
             continue;
         keep_least(&s.beta, sym_least_eigenvalue(v->angles, beta), y);
         keep_least(&s.potential, value, y);
@@ -143,7 +143,7 @@ static void find_least(function *f, objective *derivatives, const waves *v, cons
                 on_diagonal ? DIAGONAL : ANYWHERE);
     }
     if (on_diagonal)
-        x[1] = x[0];
+        x[1] = x[2] = x[0];
 }
 
 void loewner_lowest(const waves *v, double x[ANGLES])
@@ -223,7 +223,7 @@ static void improve(orbits *o, double excess, int on_diagonal, double x[ANGLES])
     value = score(o, x, HUGE_VAL);
     if (find_best(o, where, value, y) < value - (on_diagonal ? GAIN_OFF_DIAGONAL : 0.0))
         memcpy(x, y, sizeof y);
-    if (on_diagonal)
+    if (on_diagonal && o->v->angles == 2)
         leave_diagonal(o, x);
 }
 

@@ -169,9 +169,19 @@ int thesis_parameters(const patch *p)
     return good;
 }
 
-/* Does the exchange of the coordinates keep these amplitudes, one of each wave?  Amplitudes of
+/* Are j and k the same when coordinates a and b are exchanged in one of them? */
+static int exchanged(const int j[ANGLES], const int k[ANGLES], int a, int b)
+{
+    int same = j[a] == k[b] && j[b] == k[a];
+
+    for (int i = 0; i < ANGLES; i++)
+        same = same && (i == a || i == b || j[i] == k[i]);
+    return same;
+}
+
+/* Does the exchange of coordinates a and b keep these amplitudes, one of each wave?  Amplitudes of
    waves with equal k and phase are added up first. */
-static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_WAVES])
+static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_WAVES], int a, int b)
 {
     int good = 1;
     apm_t sum;
@@ -182,9 +192,9 @@ static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_W
         for (int j = 0; j < p->n_waves; j++) {
             if (apm_cmp(p->phase[i], p->phase[j]) != 0)
                 continue;
-            if (p->k[i][0] == p->k[j][0] && p->k[i][1] == p->k[j][1])
+            if (exchanged(p->k[i], p->k[j], a, a))
                 apm_add(sum, sum, amplitude[j]);
-            if (p->k[i][0] == p->k[j][1] && p->k[i][1] == p->k[j][0])
+            if (exchanged(p->k[i], p->k[j], a, b))
                 apm_sub(sum, sum, amplitude[j]);
         }
         good = good && apm_sgn(sum) == 0;
@@ -198,20 +208,18 @@ static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_W
 int patch_symmetric(const patch *p)
 {
     const apm_struct *vector[MOST_WAVES];
-    int good = p->n_angles == 2 && has_plain_region(p) && apm_cmp(p->angle[0], p->angle[1]) == 0 &&
-               apm_cmp(p->half[0], p->half[1]) == 0;
+    int good = p->n_angles > 1 && has_plain_region(p);
 
-    for (int i = 0; i < p->n_waves; i++)
-        vector[i] = p->amplitude[i];
-    good = good && exchangeable(p, vector);
-    if (good && thesis_parameters(p))
-        return apm_cmp(p->part[0][0], p->part[1][1]) == 0;
-    for (int m = 0; m < p->n_parameters && good; m++) {
-        for (int i = 0; i < p->n_waves; i++)
-            vector[i] = p->part[i][m];
-        good = exchangeable(p, vector);
+    for (int a = 0; a + 1 < p->n_angles && good; a++) {
+        good =
+            apm_cmp(p->angle[a], p->angle[a + 1]) == 0 && apm_cmp(p->half[a], p->half[a + 1]) == 0;
+        for (int m = -1; m < (thesis_parameters(p) ? 0 : p->n_parameters); m++) {
+            for (int i = 0; i < p->n_waves; i++)
+                vector[i] = m < 0 ? p->amplitude[i] : p->part[i][m];
+            good = good && exchangeable(p, vector, a, a + 1);
+        }
     }
-    return good;
+    return good && (!thesis_parameters(p) || apm_cmp(p->part[0][0], p->part[1][1]) == 0);
 }
 
 void patch_amplitudes(const patch *p, double t, double to[MOST_WAVES])

@@ -30,8 +30,8 @@ int thesis_parameters(const patch *p);
 /* Is the frame the identity, and does the region of x_1 not move with the parameters? */
 int has_plain_region(const patch *p);
 
-/* Does the exchange of the coordinates map the patch and the region of x_1 to themselves?  0 for a
-   region that moves. */
+/* Does every exchange of coordinates map the patch and the region of x_1 to themselves?  0 for a
+   region that moves, and for one angle. */
 int patch_symmetric(const patch *p);
 
 /* The amplitudes in doubles, where each parameter is t. */

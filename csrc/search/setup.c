@@ -61,8 +61,8 @@ static int set_start(cv_search *s, const char *const xstar[ANGLES])
     for (int j = 0; j < s->problem.n_angles && xstar != NULL; j++)
         if (apm_set_str(s->problem.xstar[j], xstar[j]) != APM_OK)
             status = CV_ENUMBER;
-    if (status == CV_OK && apm_cmp(s->problem.xstar[0], s->problem.xstar[1]) != 0)
-        s->symmetric = 0;
+    if (s->problem.n_angles != 2 || apm_cmp(s->problem.xstar[0], s->problem.xstar[1]) != 0)
+        s->symmetric = 0;               /* of more angles no mirror image is skipped */
     return status;
 }
 

@@ -2,9 +2,8 @@
 
    Those of the thesis's waves begin with BOX numbers: centres and half-widths of a, b, c, v0, v1
    (as set_patch says), x* and together (0 or 1).  Those of any waves begin with the numbers of
-   waves, at most 4, and of parameters; seven numbers of each wave, k0, k1, phase in radians,
-   amplitude and three parts; centre and half-width of v0 and of v1, the frame, x*, and three shifts
-   each of v0 and of v1. */
+   waves, at most 4, and of parameters; of each wave k, phase in radians, amplitude and three parts;
+   centre and half-width of each angle, the frame, x*, and three shifts of each angle. */
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -12,7 +11,7 @@
 #include "console.h"
 #include "hooks.h"
 
-enum { BOX = 13, WAVE = 7, MOST_SHOWN = 4 };        /* numbers of a wave; waves of a problem */
+enum { BOX = 13, WAVE = 5, MOST_SHOWN = 4 };        /* numbers of a wave; waves of a problem */
 enum { SITES = 60 };                                    /* no point of an orbit is further */
 enum { SITE = 79, SHOWN = 13, ANY_SITE = 83, ANY_SHOWN = 11 };
 enum { MOST_MORE = 10, MOST_OUT = SITE * SHOWN };
@@ -21,10 +20,10 @@ enum { MOST_MORE = 10, MOST_OUT = SITE * SHOWN };
 typedef struct {
     loewner *w;
     double more[MOST_MORE];
-    int together, any;                                  /* any: not the thesis's waves */
+    int together, any; /* any: angles of waves of any kind, or 0 */
 } request;
 
-typedef int routine(const request *r, double y[]);      /* 0: it cannot be done */
+typedef int routine(const request *r, double y[]); /* 0: it cannot be done */
 
 static const hooks *hooks_of(const loewner *w)
 {
@@ -220,8 +219,8 @@ static int bound_orbit(const request *r, int signs, double y[])
         return 0;
     y[3] = hooks_of(r->w)->bound(r->w->work, signs, &y[0], &y[1], &y[4], &first, n, SITES);
     y[2] = first;
-    for (int j = 0; j < SITES; j++)
-        memcpy(y + 5 + 2 * j, n[j], 2 * sizeof n[j][0]);
+    for (int j = 0, size = r->w->angles; j < SITES; j++)
+        memcpy(y + 5 + size * j, n[j], (size_t)size * sizeof n[j][0]);
     return 1;
 }
 
@@ -271,19 +270,20 @@ static int k_pull(const request *r, double y[])
     return 1;
 }
 
-static int k_sum(const request *r, double y[])          /* n, x */
+static int k_sum(const request *r, double y[]) /* n, x */
 {
     y[0] = hooks_of(r->w)->sum((int)r->more[0], r->more[1]);
     return 1;
 }
 
-static int k_largest(const request *r, double y[])      /* B */
+static int k_largest(const request *r, double y[]) /* B */
 {
     y[0] = loewner_largest(r->w);
     return 1;
 }
 
-/* any: of any waves; bounds: with those over the torus, which take most of the time, where 0 takes
+/* any: of any waves, of so many angles; bounds: with those over the torus, which take most of the
+   time, where 0 takes
    any_largest for them; first, others: what the absolute value of
    the first of the further numbers, and of the others, must be below. */
 typedef struct {
@@ -299,13 +299,16 @@ static const row kernels[] = {
     { "loewner_step", 2, 4, 0, 0, SITES, 1e9, k_step },
     { "loewner_bound", 3, 5 + 2 * SITES, 0, 0, SITES, SITES, k_bound },
     { "loewner_sites", 3, SITE * SHOWN, 0, 0, SITES, SITES, k_sites },
-    { "waves_bound", 3, 5 + 2 * SITES, 1, 0, SITES, SITES, k_bound },
-    { "waves_sites", 2, ANY_SITE * ANY_SHOWN, 1, 0, SITES, SITES, k_sites },
-    { "waves_cell", 10, 18, 1, 0, 0x1p60, 0x1p60, k_shifted },
+    { "waves_bound", 3, 5 + 2 * SITES, 2, 0, SITES, SITES, k_bound },
+    { "waves_bound_1", 3, 5 + SITES, 1, 0, SITES, SITES, k_bound },
+    { "waves_bound_3", 3, 5 + 3 * SITES, 3, 0, SITES, SITES, k_bound },
+    { "waves_sites", 2, ANY_SITE * ANY_SHOWN, 2, 0, SITES, SITES, k_sites },
+    { "waves_cell", 10, 18, 2, 0, 0x1p60, 0x1p60, k_shifted },
     { "loewner_sincos", 2, 8, 0, 0, 0x1p33, 0x1p33, k_sincos },
     { "loewner_pull", 6, 4, 0, 0, 0x1p33, 0x1p33, k_pull },
     { "loewner_sum", 2, 1, 0, 0, 0x1p33, 0x1p33, k_sum },
-    { "waves_largest", 0, 1, 1, 1, SITES, SITES, k_largest },
+    { "waves_largest", 0, 1, 2, 1, SITES, SITES, k_largest },
+    { "waves_largest_3", 0, 1, 3, 1, SITES, SITES, k_largest },
 };
 
 /* ---- the problem, whose numbers are borrowed to read */
@@ -335,39 +338,42 @@ static void set_patch(patch *b, apm_t in[], int together, const apm_t zero)
     }
 }
 
-/* Any waves, and as many further numbers.  0: the arguments are no patch. */
-static int set_any(patch *b, const question *q, int more)
+/* Any waves of so many angles, and as many further numbers.  0: the arguments are no patch. */
+static int set_any(patch *b, const question *q, int angles, int more)
 {
     apm_t *const in = q->in;
-    const int waves = q->nin < 2 ? 0 : (int)apm_get_d(in[0]), rest = 2 + WAVE * waves;
+    const int waves = q->nin < 2 ? 0 : (int)apm_get_d(in[0]);
+    const int rest = 2 + (angles + WAVE) * waves, frame = rest + 2 * angles;
+    const int star = frame + angles * angles, shifts = star + angles;
     const int parameters = q->nin < 2 ? 0 : (int)apm_get_d(in[1]);
 
     if (waves < 1 || waves > MOST_SHOWN || parameters < 0 || parameters > PARAMETERS ||
-        q->nin != rest + 16 + more)
+        q->nin != shifts + PARAMETERS * angles + more)
         return 0;
     memset(b, 0, sizeof *b);
-    b->n_angles = 2;
+    b->n_angles = angles;
     b->n_waves = waves;
     b->n_parameters = parameters;
     for (int i = 0; i < waves; i++) {
-        apm_t *const wave = in + 2 + WAVE * i;
-        for (int j = 0; j < 2; j++)
+        apm_t *const wave = in + 2 + (angles + WAVE) * i;
+        for (int j = 0; j < angles; j++)
             b->k[i][j] = (int)apm_get_d(wave[j]);
-        *b->phase[i] = *wave[2];
-        *b->amplitude[i] = *wave[3];
+        *b->phase[i] = *wave[angles];
+        *b->amplitude[i] = *wave[angles + 1];
         for (int m = 0; m < PARAMETERS; m++)
-            *b->part[i][m] = *wave[4 + m];
+            *b->part[i][m] = *wave[angles + 2 + m];
     }
-    for (int j = 0; j < 2; j++) {
+    for (int j = 0; j < angles; j++) {
         *b->angle[j] = *in[rest + 2 * j];
         *b->half[j] = *in[rest + 2 * j + 1];
-        *b->xstar[j] = *in[rest + 8 + j];
+        *b->xstar[j] = *in[star + j];
         for (int m = 0; m < PARAMETERS; m++)
-            *b->shift[j][m] = *in[rest + 10 + PARAMETERS * j + m];
+            *b->shift[j][m] = *in[shifts + PARAMETERS * j + m];
     }
-    for (int j = 0; j < 4; j++)
-        b->frame[j / 2][j % 2] = (int)apm_get_d(in[rest + 4 + j]);
-    b->frame[2][2] = 1;
+    for (int i = 0; i < ANGLES; i++)
+        for (int j = 0; j < ANGLES; j++)
+            b->frame[i][j] =
+                i < angles && j < angles ? (int)apm_get_d(in[frame + angles * i + j]) : i == j;
     return 1;
 }
 
@@ -382,7 +388,7 @@ static void any_largest(loewner *w)
         double size = fabs(w->amplitude[i]);
         for (int m = 0; m < w->n_parameters; m++)
             size += fabs(w->part[i][m]);
-        B += size * (w->k[i][0] * w->k[i][0] + w->k[i][1] * w->k[i][1]);
+        B += size * (w->k[i][0] * w->k[i][0] + w->k[i][1] * w->k[i][1] + w->k[i][2] * w->k[i][2]);
     }
     for (size_t j = 0; j < sizeof w->corner / sizeof *w->corner; j++)
         w->corner[j] = B;
@@ -419,7 +425,7 @@ int loewner_answer(const question *q)
         return NOT_MINE;
     r.any = kernel->any;
     if (q->nout != kernel->nout ||
-        (r.any ? !set_any(&problem, q, kernel->more) : q->nin != BOX + kernel->more))
+        (r.any ? !set_any(&problem, q, kernel->any, kernel->more) : q->nin != BOX + kernel->more))
         return CV_EARGUMENT;
     for (int j = 0; j < kernel->more; j++) {
         r.more[j] = apm_nearest_d(q->in[q->nin - kernel->more + j]);

@@ -1,0 +1,177 @@
+"""The core for one and three angles, against an independent truth: the second variation along true
+orbits, the largest eigenvalue over the torus, and a map of six dimensions."""
+
+import itertools
+import math
+from fractions import Fraction
+from types import SimpleNamespace
+
+import mpmath
+import numpy as np
+import pytest
+
+from converse import FourierMap, Problem, Settings
+from converse.model.region import reduced
+from converse.prover.native import Search, Task, grow
+
+import kernels
+from truth import TORTURE, mp, rng_for
+
+CASES = 80 * TORTURE
+SITES = 60
+FRAMES = {1: [(1,), (-2,)],
+          3: [(1, 0, 0, 0, 1, 0, 0, 0, 1), (1, 1, 0, 1, -1, 1, 1, 0, -1),
+              (2, 1, 0, 0, 1, -1, 1, 0, 1)]}
+STAR = ("0.575",) * 3
+
+
+@pytest.fixture(autouse=True)
+def many_digits():
+    with mpmath.workdps(40):
+        yield
+
+
+def draw(rng, n):
+    """A random patch of n angles."""
+    size, parameters = 10.0 ** rng.uniform(-0.7, 0.2), rng.randrange(4)
+    kinds = [k for k in itertools.product(range(-2, 3), repeat=n) if any(k)]
+
+    def part():
+        return rng.choice([0.0, 10.0 ** rng.uniform(-9, -2) * size])
+
+    def wave():
+        return rng.choice(kinds), *map(Fraction, (
+            rng.choice([0.0, rng.uniform(0, 6)]), size * rng.uniform(-1, 1),
+            *(part() if m < parameters else 0.0 for m in range(3))))
+
+    return SimpleNamespace(
+        n=n, waves=[wave() for _ in range(rng.randrange(1, 5))], parameters=parameters,
+        frame=rng.choice(FRAMES[n]),
+        centre=[Fraction(rng.uniform(-4, 4)) for _ in range(n)],
+        half=[Fraction(rng.choice([0.0, 10.0 ** rng.uniform(-9, -1.5)])) for _ in range(n)],
+        xstar=[Fraction(rng.uniform(-4, 4)) for _ in range(n)],
+        shifts=[[Fraction(rng.choice([0.0, 1e-3])) if m < parameters else Fraction(0)
+                 for m in range(3)] for _ in range(n)])
+
+
+def arguments(patch):
+    return [len(patch.waves), patch.parameters,
+            *(x for k, *numbers in patch.waves for x in (*k, *numbers)),
+            *(x for pair in zip(patch.centre, patch.half) for x in pair),
+            *patch.frame, *patch.xstar, *itertools.chain(*patch.shifts)]
+
+
+def variation(rng, patch, n, first, l, s, t):
+    """Q of vectors n along the orbit of a random point of the patch, often at its edge."""
+    e = [Fraction(rng.choice([-1, 1, 0, rng.uniform(-1, 1)])) for _ in range(patch.n + 3)]
+    p = [mp(w[2] + sum(x * g for x, g in zip(e[patch.n:], w[3:]))) for w in patch.waves]
+    v = [c + h * x + sum(map(Fraction.__mul__, row, e[patch.n:]))
+         for c, h, x, row in zip(patch.centre, patch.half, e, patch.shifts)]
+    x = {0: [*map(mp, patch.xstar)],
+         1: [mp(sum(f * y for f, y in zip(patch.frame[patch.n * i:], v))) for i in range(patch.n)]}
+
+    def angle(w, here):
+        return sum(k * y for k, y in zip(w[0], here)) + mp(w[1])
+
+    for j, here, before in (*((j + 1, j, j - 1) for j in range(1, t)),
+                            *((j - 1, j, j + 1) for j in range(0, s, -1))):
+        force = [q * mpmath.cos(angle(w, x[here])) for w, q in zip(patch.waves, p)]
+        x[j] = [2 * x[here][i] - x[before][i] + sum(w[0][i] * f for w, f in zip(patch.waves, force))
+                for i in range(patch.n)]
+    total = -mp(l) * sum(y * y for u in (n[0], n[-1]) for y in u)
+    total -= 2 * sum(y * z for u, w in zip(n, n[1:]) for y, z in zip(u, w))
+    for j, u in enumerate(n):
+        total += 2 * sum(y * y for y in u) - sum(
+            q * mpmath.sin(angle(w, x[first + j])) * sum(k * y for k, y in zip(w[0], u)) ** 2
+            for w, q in zip(patch.waves, p))
+    return total
+
+
+@pytest.mark.parametrize("angles", [1, 3])
+def test_the_bound_holds(angles):
+    """The second variation with the core's vectors, along true orbits, is below its bound."""
+    rng, seen, proved, close = rng_for("bound of %d angles" % angles), 0, 0, 0
+    for _ in range(CASES):
+        patch = draw(rng, angles)
+        s, t = -rng.randrange(0, 5), rng.randrange(1, 6)
+        try:
+            out = kernels.call("waves_bound_%d" % angles,
+                               [*arguments(patch), s, t, rng.randrange(2)], 5 + angles * SITES, 20)
+        except ArithmeticError:
+            continue
+        n = [[*map(mp, out[5 + angles * j:][:angles])] for j in range(int(out[3]))]
+        if n:
+            bound, values = mp(out[0]), [variation(rng, patch, n, int(out[2]), out[1], s, t)
+                                         for _ in range(3)]
+            assert max(values) <= bound, patch
+            seen += 1
+            proved += bound < 0
+            close += bound - max(values) < 0.1 * abs(max(values))
+    assert seen > CASES // 10 and proved > seen // 10 and close > seen // 10, (seen, proved, close)
+
+
+def test_the_largest_eigenvalue_of_three_angles():
+    """B is above the largest eigenvalue at any point, and hardly above at the best of these."""
+    rng = rng_for("largest of three angles")
+    for _ in range(4):
+        patch = draw(rng, 3)
+        patch.parameters = min(patch.parameters, 1)
+        B = float(kernels.call("waves_largest_3", arguments(patch), 1, 20)[0])
+        numbers = np.random.default_rng(rng.randrange(10 ** 6))
+
+        def eigenvalue(x, signs):
+            m = 2.0 * np.eye(3)
+            for k, phase, p, *parts in patch.waves:
+                p = float(p) + sum(t * float(g) for t, g in zip(signs, parts))
+                m -= p * math.sin(np.dot(k, x) + float(phase)) * np.outer(k, k)
+            return np.linalg.eigvalsh(m)[-1]
+
+        best = 0.0
+        for signs in itertools.product((-1, 1), repeat=patch.parameters):
+            top = max((eigenvalue(x, signs), *x) for x in numbers.uniform(-4, 4, (300, 3)))
+            step = 0.3
+            while step > 1e-7:
+                value, *x = top
+                top = max(top, *((eigenvalue(y, signs), *y)
+                                 for y in x + step * numbers.uniform(-1, 1, (30, 3))))
+                step *= 1.0 if top[0] > value else 0.5
+            best = max(best, top[0])
+        assert best <= B <= best + 0.01 * (best - 2)
+
+
+def line(epsilon):
+    """V = -a sum sin y_i - 2a sin(y_0 + y_1 + y_2), a = 11.21436 epsilon; what of x_1 is left."""
+    a = Fraction("11.21436") * Fraction(epsilon)
+    return reduced(Problem(FourierMap({(1, 0, 0): a, (0, 1, 0): a, (0, 0, 1): a,
+                                       (1, 1, 1): 2 * a})), STAR)
+
+
+def test_a_line_of_three_angles():
+    """The longest orbits are those of a scalar program with unrounded doubles."""
+    for epsilon, longest, most in (("0.018", 5, 120), ("0.017", 5, 300), ("0.0133", 36, 13000)):
+        grown = grow(Task(line(epsilon), Settings("loewner"), STAR))
+        assert set(grown.text) <= set("015P") and grown.counts.max_NTsteps == longest
+        assert grown.counts.proved < most
+
+
+def test_tori_of_three_angles_are_not_denied():
+    """At epsilon = 0.002 regular orbits are seen."""
+    grown = grow(Task(line("0.002"), Settings("loewner", 8, stubborn=True), STAR))
+    assert grown.counts.undecided > 0
+
+
+def test_a_parallel_map_is_one_angle():
+    """The same tree and x* for k = m q as for its only angle, in whichever letter the frame has."""
+    def search(waves, axes=None, **options):
+        problem = Problem(FourierMap(waves), axes=axes, v0=(0, 2), v1=(0, 2))
+        return Search(Task(problem, Settings("loewner"), **options))
+
+    one = grow(Task(Problem(FourierMap({(1, 0): "1.2"})), Settings("loewner"), ("1.5", "0")))
+    two = grow(Task(Problem(FourierMap({(0, 1): "1.2"})), Settings("loewner"), ("7", "1.5")))
+    assert "0" in one.text and two.text == one.text.replace("0", "1")
+    q = search({(1, 1): "0.6"}, axes=(1, 0, -1, 1))
+    assert q.one.q == (1, 1) and q.one.i == 1 and q.one.c == 1
+    assert sum(map(Fraction, q.xstar)) == Fraction(Search(Task(
+        Problem(FourierMap({(1, 0): "1.2"})), Settings("loewner"))).xstar[0])
+    assert search({(1, 1): "0.6"}, axes=(1, 0, 0, 1)).one is None     # both v are felt
+    assert search({(1, 1): "0.6", (1, 0): "0.1"}).one is None
