@@ -1,15 +1,23 @@
 """Fixed-point numbers: Python integers in units of 2^-bits.
 
 They are exact and unbounded; each rounding, a >> or a //, is to be seen where it happens, and
-errors are counted in units.  A wave is (k0, k1, phase), the phase in units; its amplitude is apart.
+errors are counted in units.  A wave is (k, phase), the phase in units; its amplitude is apart.  A
+symmetric matrix of one, two or three rows is the list of its entries on and above the diagonal, row
+by row.
 """
 
+import collections
 import functools
+import itertools
 import math
+import operator
+from fractions import Fraction
 
 GUARD = 64                              # more bits, in which constants are computed
 SLICES = 1024                           # of the circle, in the table of sines and cosines
 SINE_ERROR = 16                         # units; see Fixed.sincos
+TURN = 1 << 20                          # about the length of w in turn_of
+NEWTON_STEPS = 4                        # for the extreme eigenvalues of three rows
 
 
 def arctan_inverse(n, one):
@@ -96,42 +104,171 @@ fixed_of = functools.lru_cache(maxsize=16)(Fixed)       # by bits
 
 
 def in_units(fixed, waves):
-    """The waves, with pi phase (modulo 2 pi) off by less than 2 units."""
-    return [(*wave.k, fixed.angle(wave.phase)) for wave in waves]
+    """The waves as (k, pi phase), the phase modulo 2 pi and off by less than 2 units."""
+    return [(wave.k, fixed.angle(wave.phase)) for wave in waves]
 
 
-def angle_of(wave, x):
-    return wave[0] * x[0] + wave[1] * x[1] + wave[2]
+def dot(k, x):
+    return sum(map(operator.mul, k, x))
 
 
-def turn_of(waves):
-    """(q0, q1), the frame of the errors, step (C5): along the wave that bends most, of pairs of k
-    and an amplitude not below 0; (1, 0) where that is along an axis."""
-    (k0, k1), _ = max(waves, key=lambda wave: wave[1] * (wave[0][0] ** 2 + wave[0][1] ** 2),
-                      default=((1, 0), 0))
-    common = math.gcd(k0, k1)
-    return (k0 // common, k1 // common) if k0 and k1 else (1, 0)
+def combined(k, rows):
+    """The sum of k[i] times row i, of integer k that are not all 0."""
+    (first, row), *more = [pair for pair in zip(k, rows) if pair[0]]
+    found = [first * a for a in row]
+    for x, row in more:
+        found = [a + x * b for a, b in zip(found, row)]
+    return found
 
 
-def turned(turn, k):
-    """A vector in that frame, times |q|."""
-    return turn[0] * k[0] + turn[1] * k[1], turn[0] * k[1] - turn[1] * k[0]
+def pairs_of(n):
+    """i <= j < n, in order: the places of the entries of a symmetric matrix in its list."""
+    return list(itertools.combinations_with_replacement(range(n), 2))
+
+
+def entries(k):
+    """k k'."""
+    return [x * y for x, y in itertools.combinations_with_replacement(k, 2)]
+
+
+def full(d):
+    """The rows of a symmetric matrix of at most three."""
+    return [[d[at] for at in row] for row in ROWS[len(d)]]
+
+
+# By the number of entries: the places of a matrix's rows, and of its diagonal.
+ROWS = {len(pairs_of(n)): [[pairs_of(n).index((min(i, j), max(i, j))) for j in range(n)]
+                           for i in range(n)] for n in (1, 2, 3)}
+DIAGONAL = {count: [row[i] for i, row in enumerate(rows)] for count, rows in ROWS.items()}
+BESIDE = {count: [(rows[i][i], rows[i][j], rows[j][j]) for i in range(len(rows)) for j in range(i)]
+          for count, rows in ROWS.items()}      # and of entries beside it
+
+
+def times(d, v):
+    """A symmetric matrix times a vector."""
+    return [dot(row, v) for row in full(d)]
+
+
+def cofactors(d, sign=-1):
+    """The adjugate of a symmetric matrix, up to roundings of its two products; with the sign 1 the
+    same sums with + everywhere."""
+    if len(d) == 1:
+        return [d[0] * 0 + 1]
+    if len(d) == 3:
+        return [d[2], sign * d[1], d[0]]
+    a, b, c, e, f, g = d
+    of_b, of_c, of_f = sign * b, sign * c, sign * f
+    return [e * g + of_f * f, c * f + of_b * g, b * f + of_c * e,
+            a * g + of_c * c, b * c + of_f * a, a * e + of_b * b]
+
+
+def with_determinant(d):
+    """The cofactors and the determinant, by the first row."""
+    found = cofactors(d)
+    det = d[0] * found[0]
+    for at in range(1, len(DIAGONAL[len(d)])):
+        det = det + d[at] * found[at]
+    return found, det
+
+
+def determinant(rows):
+    """Of any square matrix of integers."""
+    return sum([(-1) ** i * row[0] * determinant([r[1:] for r in [*rows[:i], *rows[i + 1:]]])
+                for i, row in enumerate(rows)]) if rows else 1
+
+
+def inverse_rows(rows):
+    """The rows of the inverse of a matrix of integers."""
+    det, n = determinant(rows), range(len(rows))
+    return [[Fraction((-1) ** (i + j) * determinant(
+        [r[:i] + r[i + 1:] for at, r in enumerate(rows) if at != j]), det) for j in n] for i in n]
+
+
+# The frame of the errors, step (C5): integers R in rows, R R' = length; where it is not the
+# coordinates, the table of R d R' by the entries of d.
+Turn = collections.namedtuple("Turn", "rows length table")
+
+
+def turn_of(waves, n):
+    """The Turn along the wave that bends most, of pairs of k and an amplitude not below 0.
+
+    R = |w|^2 - 2 w w' reflects the first axis to k, up to the rounding of w.
+    """
+    k, _ = max(waves, key=lambda wave: wave[1] * dot(wave[0], wave[0]), default=((0,), 0))
+    if sum(map(bool, k)) < 2:
+        return Turn([[int(i == j) for j in range(n)] for i in range(n)], 1, None)
+    w = [round(x / math.hypot(*k) * TURN) - TURN * (not i) for i, x in enumerate(k)]
+    size = dot(w, w)
+    rows = [[size * (i == j) - 2 * x * y for j, y in enumerate(w)] for i, x in enumerate(w)]
+    table = [[rows[a][i] * rows[b][j] + (i != j) * rows[a][j] * rows[b][i] for i, j in pairs_of(n)]
+             for a, b in pairs_of(n)]
+    return Turn(rows, size * size, table)
 
 
 def stiffness(waves):
-    """The sum of |k|^2 (|k0| + |k1|): where each amplitude is off by one, and each slope of a wave
-    by |k0| + |k1|, an eigenvalue is off by no more."""
-    return sum([(k0 * k0 + k1 * k1) * (abs(k0) + abs(k1)) for k0, k1, _ in waves])
+    """The sum of |k|^2 times the sum of the |k[i]|: where each amplitude is off by one, and each
+    slope of a wave by that sum, an eigenvalue is off by no more."""
+    return sum([dot(k, k) * sum(map(abs, k)) for k, _ in waves])
 
 
-def largest(p, q, r, one):
-    """An upper bound of the largest eigenvalue of [p q; q r]: less than 2 units above it."""
-    return (p + r + upper_sqrt((p - r) ** 2 + 4 * q * q) + 1) // 2
+def trace(d):
+    return sum([d[at] for at in DIAGONAL[len(d)]])
+
+
+def spread(d):
+    """(n - 1) (n F - S^2) for a symmetric matrix of n rows with the trace S and the sum F of the
+    squares of all entries.  By Samuelson's inequality no eigenvalue lies further from S/n than by
+    the n-th part of its root; for n <= 2 both extreme ones do."""
+    n, found = len(DIAGONAL[len(d)]), d[0] * 0
+    for i, at, j in BESIDE[len(d)]:
+        x, y = d[i] - d[j], d[at]
+        found = found + x * x + 2 * n * y * y
+    return (n - 1) * found
+
+
+def newton(d, x):
+    """The characteristic polynomial of d at x, up to its sign that of det(d - x), its derivative,
+    without that sign, and the cofactors of d - x."""
+    found, det = with_determinant([y - x if at in DIAGONAL[len(d)] else y
+                                   for at, y in enumerate(d)])
+    return det, trace(found), found
+
+
+def largest(d):
+    """An upper bound of the largest eigenvalue of a symmetric matrix: for at most two rows less
+    than 2 units above it.  For three Newton's method leads from above to less, as the
+    characteristic polynomial is convex above its roots."""
+    n = len(DIAGONAL[len(d)])
+    found = -(-(trace(d) + upper_sqrt(spread(d))) // n)
+    for _ in range(NEWTON_STEPS * (n > 2)):
+        det, slope, _ = newton(d, found)
+        if det >= 0 or slope <= 0:      # at a root
+            break
+        found -= -det // slope
+    return found
+
+
+def least(d):
+    """The least eigenvalue of a symmetric matrix, in double precision."""
+    n = len(DIAGONAL[len(d)])
+    value = (trace(d) - math.sqrt(spread(d))) / n
+    for _ in range(NEWTON_STEPS * (n > 2)):
+        det, slope, _ = newton(d, value)
+        value += det / slope if det > 0 and slope > 0 else 0
+    return value
+
+
+def eigenvector(d, value):
+    """The eigenvector of that eigenvalue, in double precision: the longest row of the cofactors."""
+    rows = full(newton(d, value)[2])
+    v = max(zip(rows, range(len(rows))), key=lambda pair: pair[0][pair[1]])[0]
+    length = math.hypot(*v)
+    return [x / length for x in v] if length else [1.0] + [0.0] * (len(rows) - 1)
 
 
 def forms(waves, weights):
-    """The sum of weight k k' over the waves: the entries 00, 01, 11."""
-    p = q = r = 0
-    for (k0, k1, _), m in zip(waves, weights):
-        p, q, r = p + k0 * k0 * m, q + k0 * k1 * m, r + k1 * k1 * m
-    return p, q, r
+    """The sum of weight k k' over the waves, of which there is one at least."""
+    found = [weights[0] * x for x in entries(waves[0][0])]
+    for (k, _), weight in zip(waves[1:], weights[1:]):
+        found = [a + weight * b for a, b in zip(found, entries(k))]
+    return found

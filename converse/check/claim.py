@@ -1,15 +1,18 @@
 """The claim of a proof file: waves, amplitudes, a region of the torus, x*; all of it exact."""
 
+import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from .arith import combined, determinant, dot
 from .failures import NotConfirmed, Rejected
 from .limits import MAX_CHARACTERS, MAX_K, MAX_SIZE
 
 RANGES = ("a", "b", "c")                # of the thesis
-ANGLES = ("v0", "v1")
-AXES = "01234"                          # of cuts: v0, v1, then the parameters
+ANGLES = ("v0", "v1", "v2")
+AXES = "012345"                         # of cuts: v0, v1, then the parameters, and v2
+ANGLE_AXES = 0, 1, 5
 DECIMAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
 NUMBER = re.compile(DECIMAL, re.ASCII)
 RATIO = re.compile("[+-]?[0-9]+/0*[1-9][0-9]*|" + DECIMAL, re.ASCII)
@@ -17,7 +20,7 @@ THESIS = (1, 0), (0, 1), (1, 1)         # k of the three waves of the thesis
 IDENTITY, DIAGONALS = (1, 0, 0, 1), (1, 1, 1, -1)        # frames
 # A parameter's name; not one of these, which mean something else in a theorem.
 NAME = re.compile(r"[^\W\d]\w{0,30}(\[[0-9]{1,9}\])?")
-RESERVED = {"y", "y0", "y1", "J", "J0", "J1", "V", "P", "S", "pi", "sin", "cos"}
+RESERVED = {"y", "y0", "y1", "y2", "J", "J0", "J1", "J2", "V", "P", "S", "pi", "sin", "cos"}
 LETTERS = "abcdefghijklmnopqrstuvwxyz"  # of parts, and of leaves linked to them
 
 
@@ -35,8 +38,8 @@ class Wave:
 
     def over(self, cell):
         """p in the middle of a cell, and how far it goes from there."""
-        t = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(cell[0][2:], cell[1][2:])]
-        return self.at(t), sum([abs(g) / (1 << k) for g, k in zip(self.parts, cell[1][2:])])
+        t = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(cell[0][2:5], cell[1][2:5])]
+        return self.at(t), sum([abs(g) / (1 << k) for g, k in zip(self.parts, cell[1][2:5])])
 
 
 def present(waves):
@@ -46,13 +49,13 @@ def present(waves):
 
 @dataclass(frozen=True)
 class Claim:
-    """The claim of a proof file, of one of its parts, or of a proved cell of a map: exact; v0 and
-    v1 in units of pi."""
+    """The claim of a proof file, of one of its parts, or of a proved cell of a map: exact; v in
+    units of pi."""
 
     waves: tuple
-    centre: tuple                       # of v0 and v1
+    centre: tuple                       # of each v
     half: tuple
-    frame: tuple                        # x[1] = (frame[0] v0 + frame[1] v1, the same with 2 and 3)
+    frame: tuple                        # integers, row by row: x[1] = frame v
     alone: object                       # the only coordinate that is looked at, or None
     xstar: tuple
     counts: dict
@@ -61,9 +64,15 @@ class Claim:
     sha256: str                         # of the file, uncompressed
     where: str = ""                     # of a part, or a cell of a map: which it is
     parts: tuple = ()                   # of a proof file: a, b, ..., each a Claim
-    shifts: tuple = ()                  # of a part: what each parameter adds to v0 and v1, or none
+    shifts: tuple = ()                  # of a part: what each parameter adds to each v, or none
     names: tuple = ()                   # of each parameter: name, value at t = -1 and at 1; or none
     header: object = None               # of a proof file: its fields; nothing rests on the others
+
+    @property
+    def rows(self):
+        """The frame's rows."""
+        n = len(self.half)
+        return [self.frame[at:at + n] for at in range(0, len(self.frame), n)]
 
     @property
     def parameters(self):
@@ -72,19 +81,21 @@ class Claim:
     @property
     def dimension(self):
         """The number of angles of the map of which the file is: step (C29)."""
-        return 2 if any(wave.k[1] for wave in self.waves) else 1
+        return len(self.rows) if any(any(wave.k[1:]) for wave in self.waves) else 1
 
     @property
     def moves(self):
-        """How (v0, v1) change along each axis of cells from the middle to the end: step (C26)."""
-        none, (h0, h1) = Fraction(0), self.half
-        return (h0, none), (none, h1), *self.shifts, *[(none, none)] * (3 - len(self.shifts))
+        """How v changes along each axis of cells from the middle to the end: step (C26)."""
+        n = len(self.half)
+        sides = [tuple([h * (i == j) for j in range(n)]) for i, h in enumerate(self.half)]
+        none = (Fraction(0),) * n
+        v0, v1, v2 = [*sides, *[none] * (3 - n)]
+        return v0, v1, *self.shifts, *[none] * (3 - len(self.shifts)), v2
 
     def box(self, cell):
-        """For v0 and v1 each: the middle of a cell, and the change from there along its axes."""
+        """For each v: the middle of a cell, and the change from there along its axes."""
         at = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(*cell)]
-        return [(c + sum([x * y for x, y in zip(at, along)]),
-                 [y / (1 << k) for y, k in zip(along, cell[1])])
+        return [(c + dot(at, along), [y / (1 << k) for y, k in zip(along, cell[1])])
                 for c, along in zip(self.centre, zip(*self.moves))]
 
     @property
@@ -96,6 +107,21 @@ class Claim:
         negative to it.  So what excludes an orbit of that map for any n excludes it of this one."""
         return tuple(wave for wave in present(self.waves)
                      if self.alone is None or wave.k[self.alone])
+
+    @property
+    def reduced(self):
+        """The claim with the waves that are examined alone; and, if their k are multiples m q of a
+        vector, in the one angle q.x: step (C31)."""
+        waves = self.examined
+        q = [x // math.gcd(*waves[0].k) for x in waves[0].k] if waves else []
+        if not all(x * b == y * a for wave in waves for x, a in zip(wave.k, q)
+                   for y, b in zip(wave.k, q)) or not waves:
+            return replace(self, waves=waves, alone=None)
+        size = dot(q, q)
+        return replace(self, waves=tuple([
+            Wave((dot(q, wave.k) // size,), wave.phase, size * wave.middle,
+                 tuple([size * part for part in wave.parts])) for wave in waves]), alone=None,
+                       frame=tuple(combined(q, self.rows)), xstar=(dot(q, self.xstar),))
 
 
 def number(text, name, form=NUMBER):
@@ -111,19 +137,19 @@ def number(text, name, form=NUMBER):
     return value
 
 
-def check_frame(words, name):
-    """The frame: four integers (as text), of a determinant that is not 0."""
-    if len(words) != 4 or not all(re.fullmatch("[+-]?[0-9]{1,3}", word, re.ASCII)
-                                  for word in words):
-        raise Rejected(name + " is not four integers")
-    a, b, c, d = frame = tuple(map(int, words))
-    if max(map(abs, frame)) > MAX_K:
+def check_frame(words, name, n):
+    """The frame: n rows of n integers (as text), of a determinant that is not 0."""
+    if len(words) != n * n or not all(re.fullmatch("[+-]?[0-9]{1,3}", word, re.ASCII)
+                                      for word in words):
+        raise Rejected("%s is not %s integers" % (name, {2: "four", 3: "nine"}[n]))
+    found = tuple(map(int, words))
+    if max(map(abs, found)) > MAX_K:
         raise Rejected("%s has an entry beyond %d" % (name, MAX_K))
-    if a * d == b * c:
+    if not determinant([found[at:at + n] for at in range(0, n * n, n)]):
         raise Rejected(name + " has determinant 0")
-    return frame
+    return found
 
 
 def check_alone(waves, alone):
-    if alone is not None and any(all(wave.k) for wave in present(waves)):
+    if alone is not None and any(sum(map(bool, wave.k)) > 1 for wave in present(waves)):
         raise Rejected("no coordinate is alone: a wave feels both")

@@ -1,9 +1,10 @@
 """Does a region hold all of the torus, or enough of it: step (C24)."""
 
+import itertools
 import math
 from fractions import Fraction
 
-from .arith import SINE_ERROR, fixed_of
+from .arith import SINE_ERROR, determinant, dot, fixed_of, inverse_rows
 from .tree import folds
 
 CENTRE_BITS = 256                       # of the centre of the reversal
@@ -18,18 +19,17 @@ def reversal_centre(claim):
     is off by SINE_ERROR units, and by 3 as the angle is off by 3.
     """
     fixed = fixed_of(CENTRE_BITS)
-    one, (f00, f01, f10, f11) = fixed.one, claim.frame
-    u = [Fraction(f, f00 * f11 - f01 * f10) for f in (f11, -f01)]
-    middle, moved = sum([a * x for a, x in zip(u, claim.xstar)]), [Fraction(0)] * claim.parameters
+    one, u = fixed.one, inverse_rows(claim.rows)[0]
+    middle, moved = dot(u, claim.xstar), [Fraction(0)] * claim.parameters
     error = Fraction(0)
     for wave in claim.examined:
-        angle = math.floor(sum([k * x for k, x in zip(wave.k, claim.xstar)]) * one)
-        weight = sum([a * k for a, k in zip(u, wave.k)]) / 2
+        angle = math.floor(dot(wave.k, claim.xstar) * one)
+        weight = dot(u, wave.k) / 2
         cosine = weight * Fraction(fixed.sincos(angle + fixed.angle(wave.phase))[1], one)
         middle += wave.middle * cosine
         moved = [x + part * cosine for x, part in zip(moved, wave.parts)]
         error += abs(weight) * (abs(wave.middle) + sum(map(abs, wave.parts))) * (SINE_ERROR + 3)
-    for m, (shift, _) in enumerate(claim.shifts):       # pi is within 2 units
+    for m, (shift, *_) in enumerate(claim.shifts):       # pi is within 2 units
         moved[m] -= shift * Fraction(fixed.pi, one)
         error += 2 * abs(shift)
     error = error / one + sum(map(abs, moved))
@@ -38,23 +38,31 @@ def reversal_centre(claim):
     return min(ends), max(ends)
 
 
+def periods(frame):
+    """P of step (C24), of each v."""
+    n, minors = len(frame), [1]
+    for i in range(1, n + 1):           # of the last i columns
+        minors.append(math.gcd(*[determinant([row[n - i:] for row in rows])
+                                 for rows in itertools.combinations(frame, i)]))
+    return [Fraction(2 * a, b) for a, b in zip(minors, minors[1:])][::-1]
+
+
 def symmetries_used(claim):
     """The symmetries by which the claim's region holds enough of the torus, in words; None, if it
     does not, or the checker cannot tell."""
-    f00, f01, f10, f11 = claim.frame
-    common, used = math.gcd(f01, f11), []
-    period0, period1 = Fraction(2 * common, abs(f00 * f11 - f01 * f10)), Fraction(2, common)
-    (low0, high0), (low1, high1) = [(c - h, c + h) for c, h in zip(claim.centre, claim.half)]
-    if high1 - low1 < period1:
-        if high1 < 1 or not folds(claim):
+    used = []
+    ends = [(c - h, c + h, P) for c, h, P in zip(claim.centre, claim.half, periods(claim.rows))]
+    if any(high - low < P for low, high, P in ends[1:]):
+        if ends[1][1] < 1 or not folds(claim):
             return None
         used = ["exchange of the angles"]
-    if high0 - low0 < period0:
+    low, high, P = ends[0]
+    if high - low < P:
         try:
             least, most = reversal_centre(claim)
         except OverflowError:           # of an x* far off
             return None
-        if least < low0 or most + period0 / 2 > high0:
+        if least < low or most + P / 2 > high:
             return None
         used = ["reversal of time", *used]
     return used

@@ -5,7 +5,8 @@ import itertools
 import math
 from fractions import Fraction
 
-from .arith import SINE_ERROR, fixed_of, in_units, stiffness, upper_sqrt
+from .arith import SINE_ERROR, dot, fixed_of, in_units, stiffness, upper_sqrt
+from .claim import ANGLE_AXES
 from .exact import Prism, PrismWave, attempt
 from .failures import NotConfirmed, Rejected
 from .limits import MAX_BITS, MAX_HALVINGS, MAX_PIECES, SITE_PENALTIES
@@ -15,13 +16,24 @@ from .tree import changed, trees, worst_axis
 BOUND_BITS = 256        # of the bound B; the thousands of bits of narrow cells do not improve it
 
 
+def axes_of(claim, counts):
+    """The axes of the symbols: of the parameters with a part that counts or that move x[1], then of
+    the v that do; one at least."""
+    moving = {2 + m for wave in claim.waves for m, part in enumerate(wave.parts) if counts(part)}
+    moving |= {axis for axis, move in enumerate(claim.moves)
+               if any(dot(row, move) for row in claim.rows)}
+    return [axis for axis in (2, 3, 4, *ANGLE_AXES) if axis in moving] or [0]
+
+
 class Criterion:
     """Everything that does not change from leaf to leaf."""
 
     def __init__(self, claim):
         parts = [part for part, _ in trees(claim)]
+        self.take(claim)
+        waves = self.reduced.waves
         widths = [x for part in parts for x in part.half if x] + [
-            abs(g) for wave in claim.examined for g in wave.parts if g]
+            abs(g) for wave in waves for g in wave.parts if g]
         narrow = max([h.denominator.bit_length() - h.numerator.bit_length() for h in widths] + [0])
         bits = max([96] + [64 + narrow + part.counts["most_cuts"] for part in parts])
         if bits > MAX_BITS:
@@ -29,11 +41,10 @@ class Criterion:
                                % (bits, MAX_BITS))
         self.fixed, self.coarse = fixed_of(bits), fixed_of(min(bits, BOUND_BITS))
         coarse = self.coarse
-        one, waves = self.fixed.one, claim.examined
+        one = self.fixed.one
         self.waves = in_units(self.fixed, waves)
         if max([abs(x) for wave in waves for x in (wave.middle, *wave.parts)] + [0]) >= one:
             raise NotConfirmed("the parameters are too large for this checker")     # l rounds to 0
-        self.take(claim)
         # The ends of the parameters: B of a cell is at most the interpolation of B at the ends.  An
         # end is off by less than a unit for each wave, and the eigenvalue by less than stiffness.
         corners = [tuple([math.floor(wave.at(t) * coarse.one) for wave in waves])
@@ -42,8 +53,8 @@ class Criterion:
             else [tuple(corners)]
         units = in_units(coarse, waves)
         found = {ends: torus_bound(coarse, units, ends) + stiffness(units) << bits - coarse.bits
-                 for ends in set(apart)}
-        self.B_at = [found[ends] for ends in apart]
+                 for ends in set(apart)} if waves else {}
+        self.B_at = [found.get(ends, 0) for ends in apart]
         self.B = max(self.B_at)
         if self.B <= 2 * one:
             # The tails of step (C2) must be square-summable, l < 1, which needs B > 2.
@@ -52,11 +63,8 @@ class Criterion:
         self.fast = None                    # a Lockstep, where there is one
 
     def take(self, claim):
-        self.claim = claim
-        # The symbols: of the parameters that move a wave or the region, and of the angles.
-        self.axes = [axis for axis in range(2, 2 + claim.parameters) if any(claim.moves[axis])
-                     or any(wave.parts[axis - 2] for wave in claim.examined)] + [0, 1]
-        self.xstar = tuple([math.floor(x * self.fixed.one) for x in claim.xstar])
+        self.claim, self.reduced = claim, claim.reduced
+        self.axes = axes_of(self.reduced, bool)
 
     def of_part(self, part):
         """The criterion for a part of the claim, which has another x* and another region."""
@@ -72,7 +80,7 @@ class Criterion:
         product of such lines.  l falls as B grows, so an upper bound of B, and of the divisor,
         make a lower bound of l; lesser l makes (C3) larger.
         """
-        key = tuple(x[2:] for x in cell)
+        key = tuple(x[2:5] for x in cell)
         if key not in self.l_of:
             one, axes = self.fixed.one, len(self.B_at).bit_length() - 1
             B = 0
@@ -101,20 +109,22 @@ class Criterion:
         by 2 units for pi as often as it has it, and by one more; it is exact if it is zero.
         """
         (_, cuts), fixed, one, waves = cell, self.fixed, self.fixed.one, []
-        for (k0, k1, phase), wave in zip(self.waves, self.claim.examined):
+        for (k, phase), wave in zip(self.waves, self.reduced.waves):
             amplitude = math.floor(wave.over(cell)[0] * one)
             parts = [(i, math.floor(wave.parts[axis - 2] / (1 << cuts[axis]) * one))
-                     for i, axis in enumerate(self.axes[:-2]) if wave.parts[axis - 2]]
+                     for i, axis in enumerate(self.axes) if axis in (2, 3, 4)
+                     and wave.parts[axis - 2]]
             size = abs(amplitude) + sum([abs(part) for _, part in parts])
-            waves.append(PrismWave(k0, k1, phase, amplitude, parts,
+            waves.append(PrismWave(k, phase, amplitude, parts,
                                    (size * SINE_ERROR >> fixed.bits) + 3 + 2 * len(parts)))
-        ((v0, along0), (v1, along1)), x, columns, error = self.claim.box(cell), [], [], []
-        for p, q in self.claim.frame[:2], self.claim.frame[2:]:
-            sides = [p * along0[axis] + q * along1[axis] for axis in self.axes]
-            x.append(fixed.angle(p * v0 + q * v1))
+        xstar = [math.floor(x * one) for x in self.reduced.xstar]
+        v, x, columns, error = self.reduced.box(cell), [], [], []
+        for row in self.reduced.rows:
+            sides = [dot(row, [along[axis] for _, along in v]) for axis in self.axes]
+            x.append(fixed.angle(dot(row, [middle for middle, _ in v])))
             columns.append([math.floor(side * fixed.pi) for side in sides])
             error.append(2 + sum([2 * math.ceil(abs(side)) + 1 for side in sides if side]))
-        return Prism(fixed, waves, self.xstar, (x, columns, error), len(self.axes))
+        return Prism(fixed, waves, xstar, (x, columns, error), len(self.axes))
 
     def attempt(self, l, cell, penalties):
         """Is (C3) true of the whole cell?  None if so, or else why not, and for each of its axes
@@ -123,8 +133,7 @@ class Criterion:
             return attempt(self.prism(cell), l, penalties)
         except (OverflowError, ValueError, ZeroDivisionError):
             # A number too large, a singular matrix, a NaN: without a bound nothing is excluded.
-            moves = self.claim.moves
-            return "the arithmetic failed", [float(any(moves[axis])) for axis in self.axes]
+            return "the arithmetic failed", [1.0 for _ in self.axes]
 
     def excluded(self, cell):
         """Does no minimizing orbit go from x* to the cell?  (None or else why not, pieces tried)"""
@@ -147,12 +156,12 @@ class Criterion:
 
     def at_once(self):
         """Is B > 10/3 for all parameters, or where that is claimed, at the upper end?"""
-        return is_at_once(self.coarse, self.claim.examined,
+        return is_at_once(self.coarse, self.reduced.waves,
                           (1,) if self.claim.at_once == "upper end" else None)
 
     def not_at_once(self):
         """Is B <= 10/3 for some of these parameters?  Those nearest to 0 are tried, about."""
-        waves, t = self.claim.examined, [Fraction(0)] * self.claim.parameters
+        waves, t = self.reduced.waves, [Fraction(0)] * self.claim.parameters
         for m in list(range(len(t))) * 4:
             square = sum([wave.parts[m] ** 2 for wave in waves])
             slope = sum([wave.parts[m] * wave.at(t) for wave in waves])

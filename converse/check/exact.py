@@ -11,16 +11,16 @@ import collections
 import itertools
 import math
 
-from .arith import turn_of, turned
+from .arith import (DIAGONAL, combined, dot, eigenvector, entries, full, least, pairs_of, times, turn_of,
+                    with_determinant)
 from .limits import FIRST_TRY_SITES, MAX_SITES
-from .torus import least
 
 VECTOR_BITS = 28                        # of the vectors; the multipliers have twice as many
 UNIT_BITS = 56                          # of the second variation
 
 # A wave of a prism: k and the phase; amplitude and parts, as pairs (symbol, part); what p' cos y
 # and p' sin y are off by at most, computed as these numbers times cosines and sines.
-PrismWave = collections.namedtuple("PrismWave", "k0 k1 phase amplitude parts error")
+PrismWave = collections.namedtuple("PrismWave", "k phase amplitude parts error")
 
 # A wave at a site: p cos y and p sin y, and of its parts, as (symbol, h cos y, h sin y); its
 # columns xi = k.L; bounds of |xi| and |w|.
@@ -31,25 +31,28 @@ Site = collections.namedtuple("Site", "waves E beta reach")
 
 
 class Prism:
-    """A prism: its waves, x[0] and x[1] as (centre, columns, error), each for two coordinates, and
-    the number of its symbols: one for each parameter, which may also move x[1], and two more."""
+    """A prism: its waves, x[0] and x[1] as (centre, columns, error), each by coordinates, and the
+    number of its symbols."""
 
     def __init__(self, fixed, waves, xstar, x1, symbols):
         self.fixed, self.waves, self.symbols = fixed, waves, symbols
-        self.pairs = list(itertools.combinations_with_replacement(range(symbols), 2))
-        self.turn = turn_of([((wave.k0, wave.k1), abs(wave.amplitude)) for wave in waves])
-        start = xstar, ([0] * symbols,) * 2, (1, 1)
+        self.pairs = pairs_of(symbols)
+        self.turn = turn_of([(wave.k, abs(wave.amplitude)) for wave in waves], len(xstar))
+        self.squares = [entries(wave.k) for wave in waves]
+        start = xstar, [[0] * symbols for _ in xstar], [1 for _ in xstar]
         self.lanes = Lane(self, start, x1), Lane(self, x1, start)
-        self.sizes = [(k0, k1, (abs(amplitude) + sum([abs(x) for _, x in parts])) / fixed.one)
-                      for k0, k1, _, amplitude, parts, _ in waves]
+        self.sizes = [(abs(wave.amplitude) + sum([abs(x) for _, x in wave.parts])) / fixed.one
+                      for wave in waves]
+
+    def tail(self, l):
+        """The matrix l I."""
+        return [l * (i == j) for i, j in pairs_of(len(self.turn.rows))]
 
     def penalized(self, site, penalties):
         """beta at a site plus a penalty for the reach there, which makes the bound larger."""
-        p, q, r = site.beta
-        for (k0, k1, size), reach in zip(self.sizes, site.reach):
-            more = size * (penalties[0] + penalties[1] * reach) * reach
-            p, q, r = p + k0 * k0 * more, q + k0 * k1 * more, r + k1 * k1 * more
-        return p, q, r
+        more = [size * (penalties[0] + penalties[1] * reach) * reach
+                for size, reach in zip(self.sizes, site.reach)]
+        return [x + dot(more, column) for x, column in zip(site.beta, zip(*self.squares))]
 
 
 class Lane:
@@ -57,13 +60,15 @@ class Lane:
 
     def __init__(self, prism, before, first):
         self.prism, self.sites, self.ended = prism, [], False
-        (self.x0, self.L0, self.r0), (self.x, self.L, self.r) = before, first
-        self.first_columns, self.first_rest = self.L, self.r
-        self.T0 = self.T = [[0] * len(prism.pairs)] * 2         # of pairs, as form in advance()
-        a, b = map(abs, prism.turn)         # of the frame of the errors
-        self.r0, self.r = [(a * u + b * v, b * u + a * v) for u, v in (self.r0, self.r)]
-        # How strongly each wave moves the two coordinates of the frame of the errors.
-        self.strengths = [tuple(map(abs, turned(prism.turn, wave[:2]))) for wave in prism.waves]
+        (self.x0, L0, self.r0), (self.x, L, self.r) = before, first
+        self.first_columns, self.first_rest = L, self.r
+        # By coordinates L, then T, of pairs, as form in advance().
+        self.LT0, self.LT = [[[*row, *[0] * len(prism.pairs)] for row in rows] for rows in (L0, L)]
+        turn = [[abs(x) for x in row] for row in prism.turn.rows]
+        self.r0, self.r = [[dot(row, r) for row in turn] for r in (self.r0, self.r)]
+        # How strongly each wave moves the coordinates of the frame of the errors.
+        self.strengths = [[abs(dot(row, wave.k)) for row in prism.turn.rows]
+                          for wave in prism.waves]
         self.d = self.f = None              # of step (C5); d in half units
 
     def follow(self, most):
@@ -74,29 +79,25 @@ class Lane:
     def advance(self):
         """Adds this site to the lane and goes on to the next one; False if a wave reaches beyond
         1, or the matrices are singular."""
-        prism, (u, v), (L0, L1), (T0, T1), (r0, r1) = self.prism, self.x, self.L, self.T, self.r
-        fixed, pairs, length = prism.fixed, prism.pairs, sum([x * x for x in prism.turn])
+        prism, x, r = self.prism, self.x, self.r
+        fixed, pairs, symbols, length = prism.fixed, prism.pairs, prism.symbols, prism.turn.length
         bits, one, sincos = fixed.bits, fixed.one, fixed.sincos
-        waves, reaches, p, q, r = [], [], 0, 0, 0           # the last three for V''
-        E0 = E1 = push0 = push1 = error0 = error1 = 0
-        new0 = [2 * a - b for a, b in zip(L0, self.L0[0])]
-        new1 = [2 * a - b for a, b in zip(L1, self.L0[1])]
-        curve0 = [2 * a - b for a, b in zip(T0, self.T0[0])]
-        curve1 = [2 * a - b for a, b in zip(T1, self.T0[1])]
-        for wave, (strong0, strong1) in zip(prism.waves, self.strengths):
-            k0, k1, phase, amplitude, parts, error = wave
-            xi = [k0 * a + k1 * b for a, b in zip(L0, L1)]
-            tau = [k0 * a + k1 * b for a, b in zip(T0, T1)]
+        waves, reaches, bend = [], [], [0] * (len(x) * (len(x) + 1) // 2)      # V''
+        E, push, errors = [[0] * len(x) for _ in "123"]
+        new = [[2 * a - b for a, b in zip(row, row0)] for row, row0 in zip(self.LT, self.LT0)]
+        for wave, strong, squares in zip(prism.waves, self.strengths, prism.squares):
+            k, phase, amplitude, parts, error = wave
+            along = combined(k, self.LT)
+            xi, tau = along[:symbols], along[symbols:]
             size = sum(map(abs, xi))
-            rest = -(-(strong0 * r0 + strong1 * r1) // length) + (sum([
-                abs(x) if i == j else 2 * abs(x) for (i, j), x in zip(pairs, tau)]) + 1 >> 1)
+            rest = -(-dot(strong, r) // length) + (sum([
+                abs(y) if i == j else 2 * abs(y) for (i, j), y in zip(pairs, tau)]) + 1 >> 1)
             reach = size + rest
             if reach > one:
                 return False
-            s, c = sincos(k0 * u + k1 * v + phase)
+            s, c = sincos(dot(k, x) + phase)
             sine, cosine = amplitude * s >> bits, amplitude * c >> bits
-            push0, push1 = push0 + k0 * cosine, push1 + k1 * cosine
-            p, q, r = p + k0 * k0 * sine, q + k0 * k1 * sine, r + k1 * k1 * sine
+            bend = [a + sine * b for a, b in zip(bend, squares)]
             # The error of p' cos(y + z) in the model: (iii) of step (C6); a unit for each floor.
             square, far = (reach * reach >> bits) + 1, (rest * (reach + size) >> bits) + 1
             cube, fourth = (square * reach >> bits) + 1, (square * square >> bits) + 1
@@ -109,96 +110,84 @@ class Lane:
             for m, part in parts:
                 sine_part, cosine_part = part * s >> bits, part * c >> bits
                 moved.append((m, cosine_part, sine_part))
-                form = [x + sine_part * xi[i + j - m] if m in (i, j) else x
-                        for (i, j), x in zip(pairs, form)]
-                new0[m] += k0 * cosine_part
-                new1[m] += k1 * cosine_part
+                form = [y + sine_part * xi[i + j - m] if m in (i, j) else y
+                        for (i, j), y in zip(pairs, form)]
                 bent += ((3 * abs(cosine_part) * square + abs(sine_part) * (6 * rest + cube))
                          // 6 >> bits) + 1
-            mean = sum([x for (i, j), x in zip(pairs, form) if i == j]) >> bits + 1
-            E0, E1 = E0 + k0 * mean, E1 + k1 * mean
-            slopes = [sine * a >> bits for a in xi]
-            form = [sine * a + x >> bits for a, x in zip(tau, form)]
-            if k0:
-                new0 = [a - k0 * b for a, b in zip(new0, slopes)]
-                curve0 = [a - k0 * b for a, b in zip(curve0, form)]
-            if k1:
-                new1 = [a - k1 * b for a, b in zip(new1, slopes)]
-                curve1 = [a - k1 * b for a, b in zip(curve1, form)]
-            error0, error1 = error0 + strong0 * bent, error1 + strong1 * bent
+            mean = sum([y for (i, j), y in zip(pairs, form) if i == j]) >> bits + 1
+            form = [0] * symbols + form
+            for m, cosine_part, _ in moved:
+                form[m] -= cosine_part << bits
+            form = [sine * a + y >> bits for a, y in zip(along, form)]
+            for i, factor in enumerate(k):
+                errors[i] += strong[i] * bent
+                if factor:
+                    push[i] += factor * cosine
+                    E[i] += factor * mean
+                    new[i] = [a - factor * b for a, b in zip(new[i], form)]
             waves.append(SiteWave(cosine, sine, moved, xi, size, rest, error))
             reaches.append(reach / one)
-        self.sites.append(Site(waves, (E0, E1), (2 - p / one, -q / one, 2 - r / one), reaches))
-        x = 2 * u - self.x0[0] + push0 - E0, 2 * v - self.x0[1] + push1 - E1
-        if not self.bound_errors(4 * one - 2 * p, -2 * q, 4 * one - 2 * r, error0, error1):
+        beta = [-2 * y for y in bend]       # in half units
+        for at in DIAGONAL[len(beta)]:
+            beta[at] += 4 * one
+        self.sites.append(Site(waves, E, [y / (2 * one) for y in beta], reaches))
+        if not self.bound_errors(beta, errors):
             return False
-        self.x0, self.L0, self.T0 = self.x, self.L, self.T
-        self.x, self.L, self.T = x, (new0, new1), (curve0, curve1)
+        self.x, self.x0 = [2 * a - b + c - e for a, b, c, e in zip(x, self.x0, push, E)], x
+        self.LT, self.LT0 = new, self.LT
         return True
 
     def moved(self, symbol):
         """How far a symbol moves the lane's last site, the waves taken together."""
         if self.sites:
             return sum([abs(wave.columns[symbol]) for wave in self.sites[-1].waves])
-        x, y = [columns[symbol] for columns in self.first_columns]
-        return sum([abs(wave.k0 * x + wave.k1 * y) for wave in self.prism.waves])
+        x = [columns[symbol] for columns in self.first_columns]
+        return sum([abs(dot(wave.k, x)) for wave in self.prism.waves])
 
-    def bound_errors(self, p, q, r, error0, error1):
-        """The errors of the next site, step (C5): from beta = [p q; q r] in half units, and the
-        error of the step.  d[q] = beta - M is exact but that beta, in the frame of the errors, is
-        off by less than a half unit; False if there is no M."""
-        bits, (r0, r1), (old0, old1) = self.prism.fixed.bits + 1, self.r, self.r0
-        a, b = self.prism.turn
-        more = (r0 + r1 >> bits) + 1 if b else 0
-        length, error0, error1 = a * a + b * b, error0 + more, error1 + more
-        p, q, r = ((a * a * p + 2 * a * b * q + b * b * r) // length,
-                   (a * b * (r - p) + (a * a - b * b) * q) // length,
-                   (b * b * p - 2 * a * b * q + a * a * r) // length)
+    def bound_errors(self, beta, error):
+        """The errors of the next site, step (C5): from beta in half units, and the error of the
+        step.  d[q] = beta - M is exact but that beta, in the frame of the errors, is off by less
+        than a half unit; False if there is no M."""
+        bits, r, turn = self.prism.fixed.bits + 1, self.r, self.prism.turn
+        if turn.table:
+            beta = [dot(row, beta) // turn.length for row in turn.table]
+            error = [x + (sum(r) >> bits) + 1 for x in error]
         if self.d is None:
-            f0, f1 = old0 + error0, old1 + error1
+            f = [x + y for x, y in zip(self.r0, error)]
         else:
-            (a, b, c), (f0, f1), one = self.d, self.f, 1 << 2 * bits
-            det = a * c - b * b
-            if abs(det) << 60 < one:
+            (found, det), one, d = with_determinant(self.d), 1 << 2 * bits, full(self.d)
+            if abs(det) << 60 < 1 << bits * len(r):
                 return False
-            m, n, o = [x * one // det for x in (c, -b, a)]          # M, near the inverse of d
-            p, q, r = p - m, q - n, r - o
-            f0, f1 = abs(m) * f0 + abs(n) * f1, abs(n) * f0 + abs(o) * f1
-            f0 += abs(one - m * a - n * b) * old0 + abs(m * b + n * c) * old1 >> bits
-            f1 += abs(n * a + o * b) * old0 + abs(one - n * b - o * c) * old1 >> bits
-            f0, f1 = (f0 >> bits) + 2 + error0, (f1 >> bits) + 2 + error1
-        self.d, self.f = (p, q, r), (f0, f1)
-        self.r0, self.r = self.r, ((abs(p) * r0 + abs(q) * r1 >> bits) + 1 + f0,
-                                   (abs(q) * r0 + abs(r) * r1 >> bits) + 1 + f1)
+            M = [x * one // det for x in found]             # near the inverse of d
+            beta, f = [x - y for x, y in zip(beta, M)], []
+            for i, (row, more) in enumerate(zip(full(M), error)):
+                # A row of I - M d.
+                off = [abs(one * (i == j) - dot(row, column)) for j, column in enumerate(d)]
+                f.append((dot(map(abs, row), self.f) + (dot(off, self.r0) >> bits) >> bits) + 2
+                         + more)
+        self.d, self.f = beta, f
+        self.r0, self.r = r, [(y >> bits) + 1 + z for y, z in zip(times([*map(abs, beta)], r), f)]
         return True
 
 
-def inverse(d):
-    p, q, r = d
-    det = p * r - q * q
-    return r / det, -q / det, p / det
-
-
-def matrix_times(d, n):
-    return d[0] * n[0] + d[1] * n[1], d[1] * n[0] + d[2] * n[1]
-
-
 def recursion(blocks, middle, tail):
-    """The recursion of step (C3) from the first of these matrices on: d of each, and where what it
-    rests on begins, as it begins anew behind a place where d is not positive, and in the middle,
-    where the other lane begins, if there was such a place before."""
-    found, begin, inv = [], 0, tail
+    """The recursion of step (C3) from the first of these matrices on: of each d, its inverse, and
+    where what it rests on begins, as it begins anew behind a place where d is not positive, and in
+    the middle, where the other lane begins, if there was such a place before."""
+    found, begin, inverse = [], 0, tail
     for k, block in enumerate(blocks):
         if k == middle and begin:
-            begin, inv = k, tail
-        d = [x - y for x, y in zip(block, inv)]
-        found.append((d, begin))
-        definite = d[0] > 0 and d[0] * d[2] > d[1] * d[1]
-        begin, inv = (begin, inverse(d)) if definite else (k + 1, tail)
+            begin, inverse = k, tail
+        d = [x - y for x, y in zip(block, inverse)]
+        adjugate, det = with_determinant(d)
+        definite = d[0] > 0 and adjugate[-1] > 0 and det > 0
+        inverse = [x / det for x in adjugate] if definite else tail
+        found.append((d, inverse, begin))
+        begin = begin if definite else k + 1
     return found
 
 
-def test_vectors(ahead, back, l):
+def test_vectors(ahead, back, tail):
     """Vectors n for the sites of both lanes, which have these matrices; in double precision, since
     any vectors give a bound.
 
@@ -208,21 +197,22 @@ def test_vectors(ahead, back, l):
     as a rule is largest, is its eigenvector; n follows outwards by the recursions.  The part is
     taken where this eigenvalue is lowest: others may contradict next to nothing.
     """
-    tail, blocks = (l, 0.0, l), [*reversed(back), *ahead]
+    blocks = [*reversed(back), *ahead]
     left = recursion(blocks, len(back), tail)
     right = recursion(blocks[::-1], len(ahead), tail)[::-1]
-    found, n = {}, [(0.0, 0.0)] * len(blocks)
-    for k, (block, (d, begin), (beyond, end)) in enumerate(zip(blocks, left, right)):
-        low, vector = least([x + y - z for x, y, z in zip(d, beyond, block)])
+    found, n = {}, [[0.0] * len(DIAGONAL[len(tail)])] * len(blocks)
+    for k, (block, (d, _, begin), (beyond, _, end)) in enumerate(zip(blocks, left, right)):
+        form = [x + y - z for x, y, z in zip(d, beyond, block)]
+        low = least(form)
         if low < 0 and not (begin if k < len(back) else end):
-            found[begin, end] = max(found.get((begin, end), (-math.inf,)), (low, k, vector))
+            found[begin, end] = max(found.get((begin, end), (-math.inf,)), (low, k, form))
     if found:
-        _, place, n_place = min(found.values())
-        n[place] = n_place
-        for k in range(place, left[place][1], -1):
-            n[k - 1] = matrix_times(inverse(left[k - 1][0]), n[k])
-        for k in range(place + 1, len(n) - right[place][1]):
-            n[k] = matrix_times(inverse(right[k][0]), n[k - 1])
+        low, place, form = min(found.values())
+        n[place] = eigenvector(form, low)
+        for k in range(place, left[place][2], -1):
+            n[k - 1] = times(left[k - 1][1], n[k])
+        for k in range(place + 1, len(n) - right[place][2]):
+            n[k] = times(right[k][1], n[k - 1])
     return [n[len(back):], n[:len(back)][::-1]]
 
 
@@ -234,7 +224,7 @@ class SecondVariation:
     """
 
     def __init__(self, prism, l):
-        self.prism, self.symbols = prism, range(prism.symbols)
+        self.prism, self.symbols, self.angles = prism, range(prism.symbols), len(prism.turn.rows)
         self.down = prism.fixed.bits - UNIT_BITS
         self.l = l >> self.down             # a lesser l makes (C3) larger
         self.value, self.error = 0, 0       # of degree 2; the error 120 times
@@ -246,27 +236,25 @@ class SecondVariation:
     def add_lane(self, sites, vectors):
         """Adds the sites of a lane; returns the multipliers of the first, and G of step (C7) there
         without the multipliers of the other lane."""
-        mu0, mu1, beyond0, beyond1 = [[0] * (1 + len(self.symbols))] * 4
-        v0 = v1 = 0
-        for site, (n0, n1) in zip(reversed(sites), reversed(vectors)):
-            self.value += 2 * (n0 * n0 + n1 * n1 - n0 * v0 - n1 * v1) << UNIT_BITS
-            v0, v1 = n0, n1
-            E0, E1 = site.E[0] >> self.down, site.E[1] >> self.down
-            self.value += mu0[0] * E0 + mu1[0] * E1
-            for i in self.symbols:
-                self.product[i,] += mu0[1 + i] * E0 + mu1[1 + i] * E1
-            self.error += 120 * (sum(map(abs, mu0)) + sum(map(abs, mu1)))   # as E is rounded
-            G0 = [2 * a - b for a, b in zip(mu0, beyond0)]
-            G1 = [2 * a - b for a, b in zip(mu1, beyond1)]
-            for (k0, k1, *_), wave in zip(self.prism.waves, site.waves):
-                slopes = self.add_wave(wave, (k0 * n0 + k1 * n1) ** 2,
-                                       [k0 * a + k1 * b for a, b in zip(mu0, mu1)])
-                if k0:
-                    G0 = [a + k0 * b for a, b in zip(G0, slopes)]
-                if k1:
-                    G1 = [a + k1 * b for a, b in zip(G1, slopes)]
-            mu0, mu1, beyond0, beyond1 = G0, G1, mu0, mu1
-        return (beyond0, beyond1), (mu0, mu1)
+        mu = beyond = [[0] * (1 + len(self.symbols)) for _ in range(self.angles)]
+        last = [0] * self.angles
+        for site, n in zip(reversed(sites), reversed(vectors)):
+            self.value += 2 * (dot(n, n) - dot(n, last)) << UNIT_BITS
+            last = n
+            for x, E in zip(mu, site.E):
+                E >>= self.down
+                self.value += x[0] * E
+                for i in self.symbols:
+                    self.product[i,] += x[1 + i] * E
+                self.error += 120 * sum(map(abs, x))        # as E is rounded
+            G = [[2 * a - b for a, b in zip(*rows)] for rows in zip(mu, beyond)]
+            for (k, *_), wave in zip(self.prism.waves, site.waves):
+                slopes = self.add_wave(wave, dot(k, n) ** 2, combined(k, mu))
+                for i, factor in enumerate(k):
+                    if factor:
+                        G[i] = [a + factor * b for a, b in zip(G[i], slopes)]
+            mu, beyond = G, mu
+        return beyond, mu
 
     def add_wave(self, wave, omega, m):
         """Adds what a wave has in step (C8), and returns its factor of D in G, which is affine."""
@@ -324,10 +312,9 @@ class SecondVariation:
     def add_ends(self, n, ahead, back):
         """Adds the terms of x[1] and x[0], where the lanes meet; n and the results of add_lane for
         each lane."""
-        (n0, *_), (n1, *_) = [vectors or [(0, 0)] for vectors in n]
-        self.value -= 2 * (n0[0] * n1[0] + n0[1] * n1[1]) << UNIT_BITS
-        orbit = [*reversed(n[1]), *n[0]]
-        used = [u * u + v * v for u, v in orbit if u or v]
+        if all(n):
+            self.value -= 2 * dot(n[0][0], n[1][0]) << UNIT_BITS
+        used = [dot(x, x) for x in (*reversed(n[1]), *n[0]) if any(x)]
         self.value -= self.l * (used[0] + used[-1])
         lanes = self.prism.lanes
         for (_, G), (mu, _), lane in ((ahead, back, lanes[0]), (back, ahead, lanes[1])):
@@ -373,9 +360,8 @@ def attempt(prism, l, penalties):
             lane.follow(min(most, MAX_SITES))
         sites = [lane.sites for lane in prism.lanes]
         vectors = test_vectors(*[[prism.penalized(site, penalties) for site in lane]
-                                 for lane in sites], l / one)
-        n = [trimmed([(round(u * 2 ** VECTOR_BITS), round(v * 2 ** VECTOR_BITS)) for u, v in lane])
-             for lane in vectors]
+                                 for lane in sites], prism.tail(l / one))
+        n = [trimmed([[round(u * 2 ** VECTOR_BITS) for u in x] for x in lane]) for lane in vectors]
         if any(n):
             sums = SecondVariation(prism, l)
             sums.add_ends(n, *[sums.add_lane(lane[:len(used)], used)

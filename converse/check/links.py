@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 
-from .arith import SINE_ERROR, upper_sqrt
+from .arith import SINE_ERROR, dot, entries, inverse_rows, pairs_of, times, upper_sqrt
 from .claim import LETTERS
 from .failures import NotConfirmed
 from .tree import folds, leaf_text, leaves, trees
@@ -13,7 +13,7 @@ PIECES = 16                             # of the segment from one x* to the othe
 
 
 def upper_beta(claim, fixed, cell, middle, w):
-    """A matrix [p q; q r] that beta is not above, for the parameters of a cell, on the segment
+    """A symmetric matrix that beta is not above, for the parameters of a cell, on the segment
     between middle - w/2 and middle + w/2: exact.
 
     k k' is not below zero, so it may stand with an upper bound of -p' sin(k.x + phase), found at
@@ -21,40 +21,38 @@ def upper_beta(claim, fixed, cell, middle, w):
     units, its sine and cosine by SINE_ERROR and one more, and z = k.(x - middle), |z| <= h, that is
     sin(y + z) = sin y + z cos y - z^2/2 sin(some angle).
     """
-    p, q, r, off = Fraction(2), Fraction(0), Fraction(2), Fraction(SINE_ERROR + 1, fixed.one)
-    for wave in claim.examined:
-        (k0, k1), (amplitude, half) = wave.k, wave.over(cell)
-        angle = math.floor((k0 * middle[0] + k1 * middle[1]) * fixed.one)
+    found = [Fraction(2 * (i == j)) for i, j in pairs_of(len(w))]
+    off = Fraction(SINE_ERROR + 1, fixed.one)
+    for wave in claim.waves:
+        amplitude, half = wave.over(cell)
+        angle = math.floor(dot(wave.k, middle) * fixed.one)
         s, c = [Fraction(x, fixed.one) for x in fixed.sincos(angle + fixed.angle(wave.phase))]
-        h = abs(k0 * w[0] + k1 * w[1]) / 2
+        h = abs(dot(wave.k, w)) / 2
         far = off + (abs(c) + off) * h + h * h / 2
         most = max([-x * sine for x in (amplitude - half, amplitude + half)
                     for sine in (max(s - far, -1), min(s + far, 1))])
-        p, q, r = p + k0 * k0 * most, q + k0 * k1 * most, r + k1 * k1 * most
-    return p, q, r
+        found = [x + most * y for x, y in zip(found, entries(wave.k))]
+    return found
 
 
 def displacement(criterion, cell, start, end):
     """Bounds of v' - v in units of pi, if f(start) = F v pi and f(end) = F v' pi for an invariant
-    graph's f, for any parameters of the cell: for v0 and v1, exact."""
-    claim, fixed = criterion.claim, criterion.fixed
-    one, (f00, f01, f10, f11) = fixed.one, claim.frame
-    l, det = Fraction(criterion.least_pivot(cell), one), f00 * f11 - f01 * f10
-    rows, shift, radius = ((f11, -f01), (-f10, f00)), [Fraction(0)] * 2, [Fraction(0)] * 2
+    graph's f, for any parameters of the cell: for each v, exact."""
+    claim, fixed, n = criterion.claim, criterion.fixed, range(len(start))
+    rows, l = inverse_rows(claim.rows), Fraction(criterion.least_pivot(cell), fixed.one)
+    shift, radius = [Fraction(0) for _ in n], [Fraction(0) for _ in n]
     w = [(y - x) / PIECES for x, y in zip(start, end)]
     for piece in range(PIECES):
         middle = [x + (2 * piece + 1) * d / 2 for x, d in zip(start, w)]
-        p, q, r = upper_beta(claim, fixed, cell, middle, w)
-        moved = p * w[0] + q * w[1], q * w[0] + r * w[1]
-        a, c = p - 2 * l, r - 2 * l                         # D = [a q; q c]
-        for n, (u0, u1) in enumerate(rows):
-            square = (a * u0 * u0 + 2 * q * u0 * u1 + c * u1 * u1) \
-                * (a * w[0] * w[0] + 2 * q * w[0] * w[1] + c * w[1] * w[1])
-            shift[n] += (u0 * moved[0] + u1 * moved[1]) / 2
-            radius[n] += Fraction(upper_sqrt(math.ceil(square * one * one)), 2 * one)
+        b = upper_beta(claim, fixed, cell, middle, w)
+        D = [x - 2 * l * (i == j) for x, (i, j) in zip(b, pairs_of(len(w)))]
+        for i, u in enumerate(rows):
+            square = dot(u, times(D, u)) * dot(w, times(D, w))
+            shift[i] += dot(u, times(b, w)) / 2
+            radius[i] += Fraction(upper_sqrt(math.ceil(square * fixed.one ** 2)), 2 * fixed.one)
     return [(min(ends), max(ends)) for ends in [
-        [x / Fraction(fixed.pi + off, one) for x in (s / det - d / abs(det), s / det + d / abs(det))
-         for off in (-2, 2)] for s, d in zip(shift, radius)]]
+        [x / Fraction(fixed.pi + off, fixed.one) for x in (s - d, s + d) for off in (-2, 2)]
+        for s, d in zip(shift, radius)]]
 
 
 def check_links(claim, criterion):
@@ -72,7 +70,7 @@ def check_links(claim, criterion):
             if letter not in letters:
                 continue
             target = targets[letter]
-            key = part.where, letter, *[x[2:] for x in cell]
+            key = part.where, letter, *[x[2:5] for x in cell]
             if key not in known:
                 try:
                     known[key] = displacement(criterion, cell, part.xstar, target.xstar)
@@ -80,8 +78,8 @@ def check_links(claim, criterion):
                     raise NotConfirmed("the x* of a part is too far off for this checker") from None
             # The leaf, where the target's region stands still and has its middle at 0.
             leaf = replace(part, centre=[x - y for x, y in zip(part.centre, target.centre)],
-                           shifts=[(a - c, b - d) for (a, b), (c, d) in
-                                   zip(part.moves[2:], target.moves[2:])])
+                           shifts=[[x - y for x, y in zip(*both)] for both in
+                                   zip(part.moves[2:5], target.moves[2:5])])
             for (x, along), (low, high), half in zip(leaf.box(cell), known[key], target.half):
                 reach = sum(map(abs, along))
                 if x - reach + low < -half or x + reach + high > half:

@@ -11,9 +11,13 @@ import functools
 import itertools
 import math
 import random
+from dataclasses import replace
 from fractions import Fraction
 
-from .arith import fixed_of, turn_of, turned
+from .arith import (DIAGONAL, NEWTON_STEPS, ROWS, cofactors, dot, entries, fixed_of, newton, pairs_of, spread,
+                    trace, turn_of, with_determinant)
+from .claim import ANGLE_AXES
+from .criterion import axes_of
 from .limits import FIRST_TRY_SITES, MAX_HALVINGS, MAX_PIECES, MAX_SITES, SITE_PENALTIES
 from .progress import complain
 from .tree import worst_axis
@@ -23,7 +27,7 @@ UNIT = 2.0 ** -53                       # the unit roundoff u of doubles
 TWO_PI = 2 * math.pi                    # within 0.35 u of 2 pi, relatively
 
 # Of the bound; docs/proofs/checker.md needs these values.
-SINE_ROUNDING = 24 * UNIT               # error of a sine or cosine, divided by |k0| + |k1|: (C11)
+SINE_ROUNDING = 24 * UNIT               # error of a sine or cosine, by the sum of |k[i]|: (C11)
 SUM_ROUNDING = 1 + 2.0 ** -40           # factor for the roundings of a sum of positive terms: (C16)
 GRID = 1.5 * 2.0 ** 26                  # doubles near it are multiples of 2^-26: (C19)
 REST_MAX = MAX_SITES * 2.0 ** -26       # of the rests of all sites, 2^-27 for each site of a lane
@@ -34,6 +38,7 @@ AMPLITUDE_BITS, AMPLITUDE_UNIT = 100, 2.0 ** -100       # of amplitudes, in turn
 UNDERFLOW_MARGIN = 2.0 ** -200          # added to sizes and divisors that may underflow
 FAST_SIZE_MAX = 2.0 ** 10               # of a cell's amplitudes, x*, regions (in turns) and frames
 AMPLITUDE_MAX = 2.0 ** 100              # of a claim's, of which some cells may have less
+FAST_WAVES_MAX = 64                     # of all claims: (C18)
 FAST_CUTS_MAX = 52                      # cuts of an axis; cells are wider than 2^-64 turns
 REACH_MAX = 1.0                         # of a wave at a site, in radians: (C19)
 DETERMINANT_MIN = 2.0 ** -60            # of d; smaller ones end a lane: (C15)
@@ -150,76 +155,87 @@ def combined(table, waves):
 
 
 class Shape:
-    """The waves of the fast path without their amplitudes: their k and phases, after (1, 0) and
-    (0, 1); which of them are present in a lane, and which symbols move their amplitudes."""
+    """The waves of the fast path without their amplitudes: their k and phases, and which symbols
+    move their amplitudes."""
 
-    def __init__(self, waves, moving=(), parameters=0):
-        """waves: (k, phase) of each wave that is present; moving: pairs (number of such a wave,
-        symbol that moves its amplitude); parameters: the least number of symbols, of which some
-        may move x[1] alone."""
-        self.known = [((1, 0), 0), ((0, 1), 0)]
-        self.known += [wave for wave in waves if wave not in self.known]
-        at = self.at = [self.known.index(wave) for wave in waves]   # their numbers here
-        self.present = sorted(at)
-        self.moving = [[m for w, m in moving if at[w] == here] for here in range(len(self.known))]
-        self.parameters = max([parameters] + [1 + m for _, m in moving])
-        k = np.array([k for k, _ in self.known], float)
+    def __init__(self, waves, moving=(), symbols=0):
+        """waves: (k, phase) of each; moving: pairs (number of a wave, symbol that moves its
+        amplitude); symbols: the number of all of them."""
+        self.waves, self.symbols, self.count = waves, symbols, len(waves)
+        self.moving = [[m for w, m in moving if w == here] for here in range(len(waves))]
+        self.parameters = 1 + max([-1] + [m for _, m in moving])
+        k = np.array([k for k, _ in waves], float)
+        self.angles = k.shape[1]
         self.K = abs(k).sum(axis=1)
         self.square = (k * k).sum(axis=1)
-        self.grain = (64 + 16 * len(k)) * UNIT
+        self.grain = (96 + 16 * len(k)) * UNIT
         self.k = k.astype(np.int64)
         self.phases = np.array([[(round(phase * (1 << 63)) + (1 << 63)) % (1 << 64) - (1 << 63)]
-                                for _, phase in self.known], np.int64)
-        p, q = k.T
-        self.forces = self.table(p, q)              # V' from waves
-        self.strengths = self.table(abs(p), abs(q))
-        self.stiff = self.table(                    # S_00, S_01, S_11
-            *(abs(x) * self.K for x in (p * p, p * q, q * q)))
-        self.strong = self.table(abs(p) * self.K, abs(q) * self.K)
-        self.forms = self.table(p * p, p * q, q * q)
-        self.mixed = self.rows(k[2:])               # k.x of x
-        # Of a site of a lane: s, c, columns, rest, E; the inverses of both recursions, n, scores,
+                                for _, phase in waves], np.int64)
+        squares = np.array([entries(row) for row in k])
+        self.forces, self.strengths = table(k.T), table(abs(k).T)       # V' from waves
+        self.stiff = table((abs(squares) * self.K[:, None]).T)          # S
+        self.strong = table((abs(k) * self.K[:, None]).T)
+        self.forms = table(squares.T)
+        self.mixed, self.sizes = table(k), table(abs(k))                # k.x of x
+        # Of a site of a lane: s, c, columns, rest, far, E; the inverses of both recursions, n, scores,
         # and five numbers of a byte.
-        self.site_bytes = 8 * (len(k) * (5 + self.parameters) + 2 + 6 + 2 + 2) + 5
-        self.sizes = self.rows(abs(k))
-
-    def table(self, *rows):
-        """The rows, of a number for each wave, as combined() takes them."""
-        return [[(w, row[w]) for w in self.present if row[w]] for row in rows]
-
-    @staticmethod
-    def rows(columns):
-        return [[(i, x) for i, x in enumerate(row) if x] for row in columns]
+        self.site_bytes = 8 * (len(k) * (3 + symbols) + 3 * self.angles + 2 * len(squares[0]) + 1) + 5
 
     def in_frame(self, turn):
-        """In that frame of the errors: the absolute values of V' from waves, and of k.x from x."""
-        k = np.array([turned(turn, k) for k, _ in self.known], float)
-        return self.table(*abs(k.T)), self.rows(abs(k) / (turn[0] ** 2 + turn[1] ** 2))
+        """In that frame of the errors: the absolute values of V' from waves, and of k.x from x;
+        and the frame and the table of matrices, with their norms divided out."""
+        size = math.isqrt(turn.length)
+        rows = [[Fraction(x, size) for x in row] for row in turn.rows]
+        k = np.array([[float(dot(row, k)) for row in rows] for k, _ in self.waves])
+        blocks = turn.table and table([[x / turn.length for x in row] for row in turn.table])
+        return table(abs(k).T), table(abs(k)), np.abs(np.array(rows, float)), blocks
 
     def along(self, v):
         """k.v for all waves."""
-        if not self.mixed:
-            return v
-        found = np.empty((len(self.known), *v.shape[1:]))
-        found[:2] = v
-        found[2:] = combined(self.mixed, v)
-        return found
+        return combined(self.mixed, v)
 
-    def angles(self, X):
+    def turns(self, X):
         """The angles of the waves, of X in units of 2^-64 turns, as X modulo one turn."""
         return self.k @ X + self.phases
 
 
+def table(rows):
+    """The rows of a matrix, as combined() takes them."""
+    return [[(w, x) for w, x in enumerate(row) if x] for row in rows]
+
+
 def inverted(d):
     """The inverses of symmetric matrices, as far as there are any, and which are definite."""
-    det = d[0] * d[2] - d[1] * d[1]
-    inverse = d[::-1] * (1 / det)
-    np.negative(inverse[1], out=inverse[1])
-    return inverse, (d[0] > 0) & (det > 0)
+    found, det = with_determinant(d)
+    definite = (d[0] > 0) & (det > 0)
+    if len(d) == 6:
+        definite &= found[-1] > 0
+    return scaled(found, 1 / det), definite
+
+
+def scaled(rows, by):
+    into = np.empty((len(rows), *by.shape))
+    for row, part in zip(rows, into):
+        np.multiply(row, by, out=part)
+    return into
 
 
 def applied(d, v):
-    return d[:2] * v[0] + d[1:] * v[1]
+    """Symmetric matrices times vectors."""
+    if len(v) < 3:
+        return d[:2] * v[0] + d[1:] * v[1] if len(v) == 2 else d * v
+    return sum([d[row] * x for row, x in zip(ROWS[len(d)], v)])
+
+
+def scaled_sum(matrix, v):
+    """A matrix of numbers times vectors."""
+    return (matrix[..., None] * v).sum(axis=1)
+
+
+def scalar(x, y):
+    """Products of vectors."""
+    return sum([a * b for a, b in zip(x[1:], y[1:])], x[0] * y[0])
 
 
 def products(rows):
@@ -232,14 +248,23 @@ def products(rows):
 
 
 def least_eigenvalue(d):
-    return (d[0] + d[2] - np.sqrt((d[0] - d[2]) ** 2 + 4 * d[1] * d[1])) / 2
+    n = len(ROWS[len(d)])
+    found = (trace(d) - np.sqrt(spread(d))) / n
+    for _ in range(NEWTON_STEPS * (n > 2)):
+        det, slope, _ = newton(d, found)
+        found = found + np.where((det > 0) & (slope > 0), det / slope, 0)
+    return found
 
 
 def least_eigenvector(d):
-    (p, q, r), low = d, least_eigenvalue(d)
-    v = np.where(p > r, np.stack((q, low - p)), np.stack((low - r, q)))
-    length = np.sqrt(v[0] * v[0] + v[1] * v[1])
-    return np.where(length > 0, v / np.where(length > 0, length, 1), np.stack((p <= r, p > r)))
+    found = np.stack(newton(d, least_eigenvalue(d))[2])
+    diagonal = DIAGONAL[len(d)]
+    best = found[diagonal].argmax(axis=0)
+    v = sum([np.where(best == i, found[row], 0) for i, row in enumerate(ROWS[len(d)])])
+    length = np.sqrt(scalar(v, v))
+    first = np.zeros_like(v)
+    first[0] = 1
+    return np.where(length > 0, v / np.where(length > 0, length, 1), first)
 
 
 def quadratic(pairs, xi, bend, parts):
@@ -280,10 +305,10 @@ def remainder(P, H, W, A0, alpha, B0, beta, weight, size, rest, reach):
         + H * (a * far + alpha * second + b * third + beta * (rest + third)) + W * weight
 
 
-class Sites(collections.namedtuple("Sites", "alive s c columns rest E")):
+class Sites(collections.namedtuple("Sites", "alive s c columns rest far E")):
     """A site of all lanes, in the words of docs/proofs/checker.md: the lanes that have it; s, c,
-    k.L as columns of the symbols and the rest of each wave; E of step (C7).  Or a block of sites,
-    in arrays whose last axes are the sites and the lanes."""
+    k.L as columns of the symbols and the rest of each wave; bounds of |D|; E of step (C7).  Or a
+    block of sites, in arrays whose last axes are the sites and the lanes."""
 
     @classmethod
     def block(cls, sites):
@@ -303,19 +328,16 @@ def stacked(values):
     return np.stack(values, axis=-2)
 
 
-def next_rest(d, f, r, r0, err, along, beside):
+def next_rest(d, f, r, r0, err, unsure):
     """Steps (C5) and (C15): f of a site q, with M and the determinant of d, from d and f of the
-    site before it, the rests r of q and r0 of that site, and the error err of the step from q.
-    The roundings of beta multiply r by along, and its other coordinate by beside."""
-    diagonal, square = d[0] * d[2], d[1] * d[1]
-    det = diagonal - square
-    inv = 1 / det
-    M = d[::-1] * inv
-    np.negative(M[1], out=M[1])
-    m, inv, sizes = np.abs(M), np.abs(inv), np.abs(d)
-    f = applied(m, f) + err + along * r + beside * r[::-1] \
-        + 8 * UNIT * inv * ((np.abs(diagonal) + square) * r0
-                            + sizes[1] * (sizes[0] + sizes[2]) * r0[::-1])
+    site before it, the rests r of q and r0 of that site, the error err of the step from q, and
+    what the entries of beta are unsure by."""
+    found, det = with_determinant(d)
+    inv, sizes = 1 / det, np.abs(d)
+    M, some = scaled(found, inv), np.stack(cofactors(sizes, 1))
+    full = scalar(sizes[:len(r)], some[:len(r)])        # the determinant without signs
+    f = applied(np.abs(M), f) + err + applied(unsure, r) \
+        + 8 * UNIT * np.abs(inv) * (applied(some, applied(sizes, r0)) + full * r0)
     return f, M, det
 
 
@@ -338,7 +360,7 @@ class Sums:
     def add_waves(self, shape, P, h, columns, A, B):
         """Adds the polynomial of step (C8) of all waves of a block of sites, except P (A0 + alpha),
         which the multipliers of (C7) cancel up to mu.E."""
-        for w in shape.present:
+        for w in range(shape.count):
             xi, A0, alpha = columns[w], A[w, 0], A[w, 1:]
             # What stands with xi^2.
             first = (P[w] / -2) * alpha - (P[w] * B[w, 0] / 6) * xi
@@ -408,15 +430,13 @@ class Prisms:
         self.magnitude, self.l = np.abs(self.P), self.both(l, l)
         self.penalties = [self.both(x + 0 * l, x + 0 * l) for x in penalties]
         self.absent = (self.magnitude == 0) & (self.H == 0) & (self.W == 0)     # in these lanes
-        self.reach_max = np.where(self.absent, math.inf, REACH_MAX)[shape.present]
-        self.known, self.angles = shape.parameters + 2, shape.parameters
-        self.pairs = list(itertools.combinations_with_replacement(range(self.known), 2))
+        self.reach_max = np.where(self.absent, math.inf, REACH_MAX)
+        self.known, self.pairs = shape.symbols, pairs_of(shape.symbols)
         self.halves = np.array([[0.5 if i == j else 1] for i, j in self.pairs])
-        self.bound_roundings()
         start, blank, rounding = xstar + 0 * x, 0 * columns, np.full_like(off, WHOLE_ERROR)
         self.ends, self.rounding = self.both(columns, blank), self.both(off, rounding)
-        a, b = map(abs, self.turn)
-        off, rounding = [np.stack((a * u + b * v, b * u + a * v)) for u, v in (off, rounding)]
+        self.bound_roundings()
+        off, rounding = [scaled_sum(self.turn, u) for u in (off, rounding)]
         self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, off)
         self.first = self.both(x, start), self.both(columns, blank), self.both(off, rounding)
         self.sites, self.excluded = [], np.zeros(self.size, bool)  # which are not followed further
@@ -427,17 +447,20 @@ class Prisms:
         """The frame of the rests, and what the roundings of a step are multiplied by: (C12) to
         (C14)."""
         shape = self.shape
-        self.turn = q0, q1 = turn_of([(k, x) for (k, _), x in zip(shape.known,
-                                                                  self.magnitude.mean(axis=1))])
-        self.strengths, self.sizes = shape.in_frame(self.turn)
-        stiff = combined(shape.stiff, self.magnitude)
-        self.F, self.F01 = shape.grain * (1 + stiff[::2]), shape.grain * stiff[1]
+        self.strengths, self.sizes, self.turn, self.blocks = shape.in_frame(turn_of(
+            [(k, x) for (k, _), x in zip(shape.waves, self.magnitude.mean(axis=1))], shape.angles))
+        self.F = shape.grain * combined(shape.stiff, self.magnitude)
+        self.F[self.diagonal] += shape.grain
         self.from_H = shape.grain * combined(shape.strong, self.H)
         # Of the step of the centre.
         self.push = FORCE_ROUNDING * combined(shape.strengths, self.magnitude) \
             + WHOLE_ERROR * abs(shape.k).sum()
         # Of beta in that frame.
-        self.along, self.beside = (self.F[0] + self.F[1],) * 2 if q1 else (self.F, self.F01)
+        self.unsure = np.broadcast_to(trace(self.F), self.F.shape) if self.blocks else self.F
+
+    @property
+    def diagonal(self):
+        return DIAGONAL[len(self.shape.forms)]
 
     @staticmethod
     def both(ahead, back):
@@ -453,7 +476,7 @@ class Prisms:
         """The lanes at their first sites.  LT: L, then T, as columns; near: a bound of L e + T(e)
         in each coordinate; a 0 stands for the site before."""
         (self.X0, L0, self.r0), (self.X, L, self.r) = self.before, self.first
-        none = np.zeros((2, len(self.pairs), L.shape[-1]))
+        none = np.zeros((len(L), len(self.pairs), L.shape[-1]))
         self.LT0, self.LT = [np.concatenate((x, none), axis=1) for x in (L0, L)]
         self.near0, self.d, self.f = np.abs(L0).sum(axis=1), None, None
         self.alive = self.regular = np.ones(L.shape[-1], bool)
@@ -462,7 +485,7 @@ class Prisms:
 
     def moved(self, columns):
         """How far each symbol moves a site: the sum over the waves of a lane."""
-        return np.where(self.absent[:, None], 0, np.abs(columns))[self.shape.present].sum(axis=0)
+        return np.where(self.absent[:, None], 0, np.abs(columns)).sum(axis=0)
 
     def follow(self):
         """Follows all lanes until each reaches too far.  Yields True at the end and where (C3) is
@@ -474,7 +497,7 @@ class Prisms:
         """
         due, reached = FIRST_TRY_SITES, 0
         while True:
-            near = (self.reach[self.shape.present] <= self.reach_max).all(axis=0)
+            near = (self.reach <= self.reach_max).all(axis=0)
             self.end(self.alive & ~(self.regular & near))
             count = len(self.sites)
             if count and (not self.alive.any() or count == MAX_SITES):
@@ -483,7 +506,7 @@ class Prisms:
             if count >= self.sites_max and self.size > BATCH_MIN:
                 yield False
                 return
-            farthest = self.reach[self.shape.present].max(axis=0)
+            farthest = np.where(self.absent, 0, self.reach).max(axis=0)
             if 2 * count == due:
                 reached = farthest
             if count == due:
@@ -496,14 +519,13 @@ class Prisms:
 
     def measure(self):
         """How far the waves reach at this site, and (near) the coordinates without r."""
-        shape, known = self.shape, self.known
-        waves = shape.along(self.LT)
+        known, waves, own = self.known, self.shape.along(self.LT), np.abs(self.LT)
         self.columns, far = waves[:, :known].copy(), np.abs(waves)
         size = far[:, :known].sum(axis=1) * SUM_ROUNDING
-        curve = (self.halves * far[:, known:]).sum(axis=1)
-        rest, self.near = curve + combined(self.sizes, self.r), size[:2] + curve[:2] * SUM_ROUNDING
-        if shape.mixed:
-            rest[2:] += 3 * UNIT * combined(shape.sizes[2:], self.near)
+        self.near = (own[:, :known].sum(axis=1) + (self.halves * own[:, known:]).sum(axis=1)) \
+            * SUM_ROUNDING
+        rest = (self.halves * far[:, known:]).sum(axis=1) + combined(self.sizes, self.r) \
+            + 4 * UNIT * combined(self.shape.sizes, self.near)
         self.size_, self.rest = size, rest * SUM_ROUNDING
         self.reach = (size + self.rest) * SUM_ROUNDING
 
@@ -525,12 +547,13 @@ class Prisms:
     def step(self):
         """Adds this site to the lanes and goes on to the next: steps (C4) to (C6)."""
         P, shape = self.P, self.shape
-        s, c, near, low = lockstep_sincos(shape.angles(self.X))
+        s, c, near, low = lockstep_sincos(shape.turns(self.X))
         beta = combined(shape.forms, P * -s)
-        beta[::2] += 2
+        beta[self.diagonal] += 2
         LT = applied(beta[:, None], self.LT) - self.LT0
         mean = self.add_forces(LT, s, c)
-        self.sites.append(Sites(self.alive, s, c, self.columns, self.rest,
+        far = self.near + (scaled_sum(self.turn.T, self.r) if self.blocks else self.r)
+        self.sites.append(Sites(self.alive, s, c, self.columns, self.rest, far,
                                 combined(shape.forces, mean)))
         most, rest, turns = self.turns
         forces = most * near + whole(turns * low + rest * near - mean / TWO_PI)
@@ -544,12 +567,12 @@ class Prisms:
         """Adds to the next L and T what the parameters' forces and the quadratic parts of the waves
         do; returns the mean of (C6) of each wave."""
         h, known, mean = self.h, self.known, np.zeros_like(s)
-        for w in self.shape.present:
+        for w in range(self.shape.count):
             symbols = self.shape.moving[w]
             form, mean[w] = quadratic(self.pairs, self.columns[w], self.P[w] * c[w],
                                       [(m, h[w, m] * s[w]) for m in symbols])
             forces = [(m, h[w, m] * c[w]) for m in symbols]
-            for i, k in enumerate(self.shape.known[w][0]):
+            for i, k in enumerate(self.shape.waves[w][0]):
                 if k:
                     LT[i, known:] -= form if k == 1 else k * form
                     for m, wave in forces:
@@ -559,24 +582,20 @@ class Prisms:
     def next_rests(self, beta, s, c):
         """The rests of the next site, steps (C5), (C6) and (C13) to (C15), from beta and the
         absolute values of sines and cosines."""
-        shape, F, (q0, q1), r = self.shape, self.F, self.turn, self.r
-        slack, near = SINE_ROUNDING * shape.K[:, None], self.near
+        shape, r = self.shape, self.r
+        slack = SINE_ROUNDING * shape.K[:, None]
         bent = bending(self.P, self.H, self.W, s + slack, c + slack, self.size_, self.rest,
                        self.reach)
-        err = self.push + F * near + self.F01 * near[::-1] + self.from_H \
+        err = self.push + applied(self.F, self.near) + self.from_H \
             + (4 + len(s)) * UNIT * self.near0
-        err = combined(self.strengths, bent) + abs(q0) * err + abs(q1) * err[::-1]
-        block = beta
-        if q1:
-            flat, skew, steep = [x / (q0 * q0 + q1 * q1) for x in (q0 * q0, q0 * q1, q1 * q1)]
-            block = np.stack((flat * beta[0] + 2 * skew * beta[1] + steep * beta[2],
-                              skew * (beta[2] - beta[0]) + (flat - steep) * beta[1],
-                              steep * beta[0] - 2 * skew * beta[1] + flat * beta[2]))
+        if self.blocks:
+            err, beta = scaled_sum(self.turn, err), combined(self.blocks, beta)
+        err = combined(self.strengths, bent) + err
         if self.d is None:                      # d[q] = beta, f = err - r[o] + roundings
-            f, d = self.r0 + err + self.along * r + self.beside * r[::-1], block
+            f, d = self.r0 + err + applied(self.unsure, r), beta
         else:
-            f, M, det = next_rest(self.d, self.f, r, self.r0, err, self.along, self.beside)
-            self.regular, d = np.abs(det) > DETERMINANT_MIN, block - M
+            f, M, det = next_rest(self.d, self.f, r, self.r0, err, self.unsure)
+            self.regular, d = np.abs(det) > DETERMINANT_MIN, beta - M
         self.d, self.f = d, f * SUM_ROUNDING
         return (applied(np.abs(d), r) + self.f) * SUM_ROUNDING
 
@@ -620,11 +639,13 @@ class Prisms:
         reach = site.reach
         more = (self.penalties[0] + self.penalties[1] * reach) * reach
         block = combined(self.shape.forms, (self.magnitude + self.H) * more - self.P * site.s)
-        block[::2] += 2
+        block[self.diagonal] += 2
         return block
 
     def tail(self):
-        return np.stack((self.l, 0 * self.l, self.l))
+        found = np.zeros((len(self.shape.forms), self.l.size))
+        found[self.diagonal] = self.l
+        return found
 
     def recursion_inwards(self, ends):
         """The recursion from each lane's end: the inverses, from which site of each lane on it has
@@ -702,8 +723,8 @@ class Prisms:
         value and polynomial, infinite where there is none."""
         N, shape = len(self.sites), self.shape
         n, tails = self.test_vectors()
-        sums = Sums(self.known, self.angles, self.l.size)
-        mu = mu1 = np.zeros((2, 1 + self.known, self.l.size))   # of this site, and the one beyond
+        sums = Sums(self.known, shape.parameters, self.l.size)
+        mu = mu1 = np.zeros((shape.angles, 1 + self.known, self.l.size))   # of this site, and the one beyond
         terms, span = 0 * mu[:, 0], max(1, BLOCK // self.l.size)
         for start in reversed(range(0, N if any(x.any() for x in n) else 0, span)):
             sites, n0 = self.sites[start:start + span], stacked(n[start:start + span])
@@ -715,11 +736,11 @@ class Prisms:
         self.add_ends(sums, mu, mu1, terms)
         sums.join(self.joined)
         x, y = n[0][:, :self.size], n[0][:, self.size:]
-        value = sums.value + sums.low - 2 * (x[0] * y[0] + x[1] * y[1])
+        value = sums.value + sums.low - 2 * scalar(x, y)
         form = sums.form()
         added = sum([np.abs(x) for x in form.values()])
         chain = (len(self.P) + 2) * (span + -(-N // span))  # terms one after the other: (C19)
-        mass = 96 * sums.mass + 256 * sums.bent + chain * (sums.bent + REST_MAX) + 64 * added
+        mass = 96 * sums.mass + 256 * sums.bent + chain * (sums.bent + REST_MAX) + 96 * added
         error = (sums.error + UNIT * mass) * (SUM_ROUNDING + 64 * UNIT * N)
         return value, form, added, np.where(sums.mass + sums.bent < MASS_MAX, error, math.inf)
 
@@ -727,7 +748,7 @@ class Prisms:
         """Step (C7), from the last of these sites inwards: mu of each and of the one beyond, A and
         B; and mu of the next two."""
         shape, P, h, found = self.shape, self.P, self.h, []
-        moving = [(w, m) for w in shape.present for m in shape.moving[w]]
+        moving = [(w, m) for w in range(shape.count) for m in shape.moving[w]]
         for site, squares in zip(sites[::-1], np.moveaxis(omega, -2, 0)[::-1]):
             m = shape.along(mu)
             A, B = m * site.c[:, None], -m * site.s[:, None]
@@ -746,11 +767,11 @@ class Prisms:
         """Adds a block of sites, with the vectors n0 there and n1 beyond each; returns the sum of
         the sizes of the terms of G at the first: step (C18)."""
         shape, P, H, W = self.shape, self.P[:, None], self.H[:, None], self.W[:, None]
-        (E0, E1), size, reach = site.E, site.size, site.reach
-        magnitude, long, (mu, mu1) = np.abs(P), n0[0] ** 2 + n0[1] ** 2, mus
+        E, size, reach = site.E, site.size, site.reach
+        magnitude, long, (mu, mu1) = np.abs(P), scalar(n0, n0), mus
         sums.add(2 * long - (P * omega * site.s).sum(axis=0) - self.l * tails * long
-                 - 2 * (n0[0] * n1[0] + n0[1] * n1[1]) + (mu[0, 0] * E0 + mu[1, 0] * E1))
-        sums.linear += (mu[0, 1:] * E0 + mu[1, 1:] * E1).sum(axis=1)
+                 - 2 * scalar(n0, n1) + scalar(mu[:, 0], E))
+        sums.linear += scalar(mu[:, 1:], E).sum(axis=1)
         sums.add_waves(shape, P, self.h, site.columns, A, B)
         most = np.abs(mu).sum(axis=1)
         K, square = shape.K[:, None, None], shape.square[:, None, None] * long
@@ -763,8 +784,8 @@ class Prisms:
         terms = combined(shape.strengths, weight * (magnitude * (1 + size) + H)) \
             + 2 * most + np.abs(mu1).sum(axis=1)
         # The last but one: what E is off by, (C18).
-        off = self.push[:, None] + self.F[:, None] * reach[:2] + self.F01 * reach[1::-1]
-        small = most * off + shape.grain * terms * reach[:2]
+        off = self.push[:, None] + applied(self.F[:, None], site.far)
+        small = most * off + shape.grain * terms * site.far
         sums.error += small.sum(axis=(0, 1))
         return terms[:, 0]
 
@@ -775,8 +796,8 @@ class Prisms:
         G, terms = G - across, terms + np.abs(across).sum(axis=1)
         small = np.abs(G).sum(axis=1) * self.rounding \
             + self.shape.grain * terms * (np.abs(self.ends).sum(axis=1) + self.rounding)
-        sums.error += small[0] + small[1]
-        sums.ends = np.stack([G[0] * x + G[1] * y for x, y in zip(*self.ends)])
+        sums.error += small.sum(axis=0)
+        sums.ends = np.stack([scalar(G, side) for side in self.ends.swapaxes(0, 1)])
 
     def bound(self):
         """An upper bound of the left side of (C3) for each prism; and about how much each symbol
@@ -805,18 +826,20 @@ class Lockstep:
         wave."""
         if not all(claim.examined for claim in claims):
             raise ValueError("no wave: orbits without end")
+        reduced = [claim.reduced for claim in claims]
+        if len({len(claim.xstar) for claim in reduced}) > 1:
+            reduced = [replace(claim, waves=claim.examined) for claim in claims]
+        claims = reduced
         self.batch, self.memory = BATCH, MEMORY_MAX
-        # The axes of the symbols: of the parameters that move anything in doubles, and of v0, v1.
-        self.axes = sorted({2 + m for claim in claims for wave in claim.examined
-                            for m, part in enumerate(wave.parts) if float(part)}    # or underflow
-                           | {2 + m for claim in claims for m, shift in enumerate(claim.shifts)
-                              if any(shift)}) + [0, 1]
+        # The axes of the symbols; parts that underflow move nothing.
+        moving = {axis for claim in claims for axis in axes_of(claim, float)}
+        self.axes = [axis for axis in (2, 3, 4, *ANGLE_AXES) if axis in moving]
         self.take_waves(claims)
         self.take_regions(claims)
         sizes = [x for claim in claims for x in (
             *claim.xstar, *claim.centre, *claim.frame,
             *[x / 2 for x in itertools.chain(*claim.moves)])]
-        amplitudes = [abs(x) for claim in claims for wave in claim.examined
+        amplitudes = [abs(x) for claim in claims for wave in claim.waves
                       for x in (wave.middle, *wave.parts)]
         if max(map(abs, sizes)) > FAST_SIZE_MAX or max(amplitudes) > AMPLITUDE_MAX:
             raise ValueError("too large for the fast path")
@@ -825,20 +848,22 @@ class Lockstep:
         """The waves of all claims, and by wave and claim how often it is there, its middle and, by
         axis of cells, its parts, in units of 2^-AMPLITUDE_BITS turns."""
         waves = list(dict.fromkeys((wave.k, wave.phase % 2) for claim in claims
-                                   for wave in claim.examined))
+                                   for wave in claim.waves))
+        if len(waves) > FAST_WAVES_MAX:
+            raise ValueError("too many waves for the fast path")
         shape = len(waves), len(claims)
         self.present = np.zeros(shape)
-        self.middle, self.parts = np.full(shape, 0, object), np.full((5, *shape), 0, object)
+        self.middle, self.parts = np.full(shape, 0, object), np.full((6, *shape), 0, object)
         for q, claim in enumerate(claims):
-            for wave in claim.examined:
+            for wave in claim.waves:
                 w = waves.index((wave.k, wave.phase % 2))
                 self.present[w, q] += 1
                 self.middle[w, q] += units_of(wave.middle, AMPLITUDE_BITS)
                 for axis, part in enumerate(wave.parts, 2):
                     self.parts[axis, w, q] += units_of(part, AMPLITUDE_BITS)
-        self.shape = Shape(waves, [(w, m) for m, axis in enumerate(self.axes[:-2])
+        self.shape = Shape(waves, [(w, m) for m, axis in enumerate(self.axes)
                                    for w in self.parts[axis].any(axis=1).nonzero()[0]],
-                           len(self.axes) - 2)
+                           len(self.axes))
 
     def take_regions(self, claims):
         """The regions of all claims, and x*, in units of 2^-64 turns: the centres, and what moves
@@ -849,7 +874,7 @@ class Lockstep:
         self.centre = np.array([units(claim.centre) for claim in claims], object).T
         self.moves = np.array([[units(along) for along in claim.moves] for claim in claims],
                               object).transpose(1, 2, 0)
-        self.frame = np.array([claim.frame for claim in claims], object).T.reshape(2, 2, -1)
+        self.rows = np.array([claim.rows for claim in claims], object).transpose(1, 2, 0)
         self.xstar = wrapped(np.array([[units_of(x, 64) for x in claim.xstar] for claim in claims],
                                       object).T)
 
@@ -873,12 +898,12 @@ class Lockstep:
         middle, and by 2.1 for each part, in all by 7.4 units, 0.73 2^-94 radians.  A part is off by
         1.1 units, less than 2^-97 radians, and by 2.4 u of it.
         """
-        A = np.full((len(self.shape.known), number.size), 0, object)
+        A = np.full((self.shape.count, number.size), 0, object)
         W, h = np.zeros(A.shape), np.zeros((len(A), self.shape.parameters, number.size))
-        for w, here, middle, parts in zip(self.shape.at, self.present, self.middle,
-                                          self.parts.swapaxes(0, 1)):
+        for w, (here, middle, parts) in enumerate(zip(self.present, self.middle,
+                                                      self.parts.swapaxes(0, 1))):
             A[w] = middle[number]
-            for m, axis in enumerate(self.axes[:-2]):
+            for m, axis in enumerate(self.axes):
                 if parts[axis].any():
                     along = parts[axis, number]
                     A[w] += along * at[axis] >> cuts[axis]
@@ -892,12 +917,12 @@ class Lockstep:
         In turns, the centre and what each axis adds are off by 1 and 3 units, of which the frame
         makes as many as its entries; and a column is off by 5 u of its terms.
         """
-        V, columns = self.centre[:, number], np.zeros((2, len(self.axes), number.size))
+        V, frame = self.centre[:, number], self.rows[..., number]
+        columns = np.zeros((len(V), len(self.axes), number.size))
         for m, axis in enumerate(self.axes):
             along = self.moves[axis][:, number]
             V = V + (along * at[axis] >> cuts[axis])
             columns[:, m] = along.astype(float) * (TWO_PI / 2.0 ** 64) * part[axis]
-        frame = self.frame[..., number]
         X = wrapped((frame * V).sum(axis=1))
         frame = frame.astype(float)
         sizes = np.abs(frame)
@@ -978,7 +1003,7 @@ class Lockstep:
         some = sorted([n for n, (_, (_, cuts)) in enumerate(cells)
                        if max(cuts) <= FAST_CUTS_MAX and least[n] is not None],
                       key=lambda n: sum(cells[n][1][1]))
-        index, cuts = [np.array([cells[n][1][part] for n in some], np.int64).reshape(-1, 5).T
+        index, cuts = [np.array([cells[n][1][part] for n in some], np.int64).reshape(-1, 6).T
                        for part in (0, 1)]
         number = np.array([cells[n][0] for n in some], int)
         A, h, _ = self.amplitudes(*self.placed(index, cuts), number)

@@ -14,38 +14,40 @@ COUNTS = ("depth", "cuts", "proved", "symmetric", "linked", "undecided", "most_c
 IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries", "reasons",
            "HermSuccess", "LLSuccess", "ll_used", "max_steps", "max_NTsteps", "pending")
 OPTIONAL = {"xstar", "B", "T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "hopeless",
-            "long orbits", "parameter", "comment"}
-FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "at once", "wave", "frame", "alone", "odd about"}
+            "long orbits", "parameter", "comment", "angles", "v2"}
+FIELDS = {*ANGLES[:2], *COUNTS, *IGNORED, "kind", "at once", "wave", "frame", "alone", "odd about"}
 
 
-def pair(value, name, form=NUMBER, count=0):
-    """Two numbers, or count more."""
+def numbers(value, name, n=2, form=NUMBER, count=0):
+    """n numbers, two or three, or count more."""
     words = value.split(" ", 9)
-    if len(words) not in (2, 2 + count) or not all(map(form.fullmatch, words)):
-        raise Rejected("%s is not two%s decimal numbers" % (
-            name, " or %d" % (2 + count) if count else ""))
+    if len(words) not in (n, n + count) or not all(map(form.fullmatch, words)):
+        raise Rejected("%s is not %s%s decimal numbers" % (
+            name, ("two", "three")[n - 2], " or %d" % (n + count) if count else ""))
     return tuple([number(word, name, form) for word in words])
 
 
-def place(xstar, v0, v1, name, count=0):
-    """x*, centres and half-widths of v0 and v1, and their shifts by count parameters, if any."""
-    ranges = [pair(v0, name + "v0", count=count), pair(v1, name + "v1", count=count)]
+def place(xstar, ranges, name, count=0):
+    """x*, centres and half-widths of each v, and their shifts by count parameters, if any."""
+    ranges = [numbers(text, name + v, count=count) for text, v in zip(ranges, ANGLES)]
     if wrong := [angle for angle, (_, half, *_) in zip(ANGLES, ranges) if half < 0]:
         raise Rejected("%s%s: the half-width is negative" % (name, wrong[0]))
     centre, half, *shifts = zip(*[(x + (Fraction(0),) * count)[:2 + count] for x in ranges])
     shifts = tuple(shifts) * any(map(any, shifts))
-    return xstar and pair(xstar, name + "xstar"), centre, half, shifts
+    return xstar and numbers(xstar, name + "xstar", len(ranges)), centre, half, shifts
 
 
 def parse_part(letter, text, claim):
-    """A part of a claim, of this letter or number, from what follows `part: `: four lines and a
-    tree, of which nothing is there before its search begins."""
-    name, found = "part " + letter, re.match(
-        letter + "\nxstar: (.*)\nv0: (.*)\nv1: (.*)\ntree:(?:\n|$)", text)
+    """A part of a claim, of this letter or number, from what follows `part: `: lines and a tree, of
+    which nothing is there before its search begins."""
+    name, angles = "part " + letter, ANGLES[:len(claim.half)]
+    found = re.match(letter + "\nxstar: (.*)\n%stree:(?:\n|$)" % "".join(
+        [v + ": (.*)\n" for v in angles]), text)
     if not found:
-        raise Rejected("%s is not 'part: %s', xstar, v0, v1 and a tree, each on its line"
-                       % (name, letter))
-    xstar, centre, half, shifts = place(*found.groups(), name + "'s ", claim.parameters)
+        raise Rejected("%s is not 'part: %s', xstar, %s and a tree, each on its line"
+                       % (name, letter, ", ".join(angles)))
+    xstar, *ranges = found.groups()
+    xstar, centre, half, shifts = place(xstar, ranges, name + "'s ", claim.parameters)
     return replace(claim, xstar=xstar, centre=centre, half=half, shifts=shifts, where=name,
                    tree=text[found.end():].replace("\n", ""), counts={}, at_once="no")
 
@@ -56,21 +58,28 @@ def read_proof(file):
     tree, *parts = ("\n" + bytes(file.body).decode("latin-1")).split("\npart: ")
 
     def one_of(name, *values):
-        if header[name] not in values:
-            raise Rejected("the header's %s is neither %s" % (name, " nor ".join(values)))
-        return header[name]
+        if header.get(name) not in values:
+            raise Rejected("the header's %s is neither %s" % (
+                name, " nor ".join(filter(None, values))))
+        return header.get(name)
 
-    xstar, centre, half, _ = place(*map(header.get, ("xstar", *ANGLES)), "the header's ")
+    n = 2 if one_of("angles", None, "3") is None else 3
+    if ("v2" in header) != (n == 3):
+        raise Rejected("the header has v2 without 'angles: 3', or this without v2")
+    xstar, centre, half, _ = place(header.get("xstar"), map(header.get, ANGLES[:n]),
+                                   "the header's ")
     for name in COUNTS:
         if not re.fullmatch("[0-9]{1,18}", header[name], re.ASCII):
             raise Rejected("the header's %s is not a count" % name)
     at_once = one_of("at once", "yes", "no", "upper end")
-    waves = parse_waves(header["wave"])
-    frame = check_frame(header["frame"].split(" "), "the header's frame")
+    waves = parse_waves(header["wave"], n=n)
+    frame = check_frame(header["frame"].split(" "), "the header's frame", n)
     alone = {"no": None, "0": 0, "1": 1}[one_of("alone", "no", "0", "1")]
     check_alone(waves, alone)
+    if n == 3 and alone is not None:
+        raise Rejected("a coordinate is alone, and there are three")
     odd = None if header["odd about"] == "no" else \
-        pair(header["odd about"], "the header's odd about", RATIO)
+        numbers(header["odd about"], "the header's odd about", n, RATIO)
     claim = Claim(waves, centre, half, frame, alone, xstar,
                   {name: int(header[name]) for name in COUNTS}, at_once, tree.replace("\n", ""),
                   file.sha256, names=parameter_names(header.get("parameter", ()), waves),
@@ -115,22 +124,23 @@ def check_odd(claim, odd):
         raise Rejected("without exactly one parameter there is no upper end")
 
 
-def parse_waves(lines, form=NUMBER):
-    """The waves of a header; their amplitudes have this form."""
+def parse_waves(lines, form=NUMBER, n=2):
+    """The waves of a header, of n angles; their amplitudes have this form."""
     if not 0 < len(lines) <= MAX_WAVES:
         raise Rejected("the header has %d waves, not 1 to %d" % (len(lines), MAX_WAVES))
     waves = []
     for at, line in enumerate(lines, 1):
         words, name = line.split(" ", 9), "the header's wave %d" % at
-        if not 4 <= len(words) <= 7:
-            raise Rejected(name + " is not K0 K1 PHASE AMPLITUDE and at most three parts")
-        if not all(re.fullmatch("[+-]?[0-9]{1,3}", word, re.ASCII) for word in words[:2]):
+        if not n + 2 <= len(words) <= n + 5:
+            raise Rejected("%s is not %s PHASE AMPLITUDE and at most three parts" % (
+                name, "K0 K1 K2"[:3 * n - 1]))
+        if not all(re.fullmatch("[+-]?[0-9]{1,3}", word, re.ASCII) for word in words[:n]):
             raise Rejected(name + " has no integer k")
-        k = tuple(map(int, words[:2]))
-        if k == (0, 0) or max(map(abs, k)) > MAX_K:
+        k = tuple(map(int, words[:n]))
+        if not any(k) or max(map(abs, k)) > MAX_K:
             raise Rejected("%s has a k that is zero or beyond %d" % (name, MAX_K))
-        phase = number(words[2], name, RATIO)
-        middle, *parts = [number(word, name, form) for word in words[3:]]
+        phase = number(words[n], name, RATIO)
+        middle, *parts = [number(word, name, form) for word in words[n + 1:]]
         waves.append(Wave(k, phase, middle, tuple(parts)))
         if len(parts) != len(waves[0].parts):
             raise Rejected(name + " has not as many parts as the first")

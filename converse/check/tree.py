@@ -8,11 +8,11 @@ region exactly.
 import itertools
 from array import array
 
-from .claim import AXES, DIAGONALS, IDENTITY, LETTERS
+from .claim import ANGLE_AXES, AXES, DIAGONALS, IDENTITY, LETTERS
 from .failures import NotConfirmed, Rejected, named
 from .limits import HALVINGS_APART_MAX, MATTERS_MIN, MAX_CUTS
 
-ROOT = (0,) * 5, (0,) * 5
+ROOT = (0,) * len(AXES), (0,) * len(AXES)
 GO_ON = "; converse -r FILE goes on with the search"
 
 
@@ -62,8 +62,9 @@ def trees(claim):
 def tree_counts(claim, letters=""):
     """Counts the nodes of the tree; Rejected, if it is not whole and decided."""
     total = most_cuts = deepest = 0
-    if set(AXES[2 + claim.parameters:]) & set(claim.tree):
-        raise Rejected("the tree cuts a parameter that there is not")
+    known = {*ANGLE_AXES[:len(claim.half)], *range(2, 2 + claim.parameters)}
+    if any(letter in claim.tree for axis, letter in enumerate(AXES) if axis not in known):
+        raise Rejected("the tree cuts an angle or a parameter that there is not")
     for position, (_, cuts) in leaves(claim.tree, kinds="PSU" + letters):
         total, depth, kind = total + 1, sum(cuts), claim.tree[position]
         if kind == "U":
@@ -115,8 +116,8 @@ def coefficients(waves, swap=False, order=None):
     found = {}
     for wave in waves:
         k, phase = wave.k[::-1] if swap else wave.k, wave.phase
-        if k < (0, 0):                          # sin(x) = sin(pi - x)
-            k, phase = (-k[0], -k[1]), 1 - phase
+        if k < (0,) * len(k):                   # sin(x) = sin(pi - x)
+            k, phase = tuple([-x for x in k]), 1 - phase
         sign = -1 if phase // 1 % 2 else 1      # sin(x + pi) = -sin(x)
         parts = [wave.parts[m] for m in order] if order else wave.parts
         key = k, phase % 1
@@ -128,8 +129,8 @@ def coefficients(waves, swap=False, order=None):
 def exchange_orders(claim):
     """The orders of the parameters in which the potential with its coordinates exchanged, t'[m] =
     t[order[m]], is the potential, and the shifts are the same; none, if x* is not its own image or
-    a coordinate is alone."""
-    if claim.xstar[0] != claim.xstar[1] or claim.alone is not None:
+    a coordinate is alone, or there are three."""
+    if len(claim.xstar) != 2 or claim.xstar[0] != claim.xstar[1] or claim.alone is not None:
         return []
     # V(sigma y; t) = V(y; t'):  the part of t[order[m]] is, exchanged, that of t'[m].
     return [order for order in itertools.permutations(range(claim.parameters))
@@ -152,7 +153,7 @@ class Mirror:
     """
 
     def __init__(self, claim):
-        v0, v1 = zip(claim.centre, claim.half)
+        v0, v1, *_ = zip(claim.centre, claim.half)
         fits = v0 == v1 and claim.frame == IDENTITY and not claim.shifts
         self.orders = exchange_orders(claim) if fits else []    # of the parameters
         self.tree = claim.tree

@@ -10,10 +10,12 @@ from .tree import leaf_text
 from .version import __version__
 
 WIDTH = 100                             # characters of a line
+NUMBERS = {1: "one angle", 2: "two angles", 3: "three angles"}
 GRAPH = {1: ["has no rotational invariant circle",
              "(no invariant graph J = P + S'(y), P constant, S periodic and C1)"],
-         2: ["has no invariant Lagrangian graph",
-             "(no invariant torus J = P + S'(y) over both angles, P constant, S periodic and C1)"]}
+         **{n: ["has no invariant Lagrangian graph",
+                "(no invariant torus J = P + S'(y) over %s angles, P constant, S periodic and C1)"
+                % words] for n, words in ((2, "both"), (3, "all three"))}}
 QUARTERS = ("sin", 1), ("cos", 1), ("sin", -1), ("cos", -1)     # sin(y + n pi/2): function, sign
 
 
@@ -62,8 +64,8 @@ def sum_text(coefficients, names):
 
 
 def frame_text(frame):
-    """The angles that v0 and v1 stand for, such as (v0 + v1, v0 - v1)."""
-    return "(%s)" % ", ".join([sum_text(row, ANGLES) for row in (frame[:2], frame[2:])])
+    """The angles that v stands for, such as (v0 + v1, v0 - v1)."""
+    return "(%s)" % ", ".join([sum_text(row, ANGLES) for row in frame])
 
 
 def amplitude_in(wave, names):
@@ -104,14 +106,14 @@ def terms(waves, names, letters, factors, quarters):
 
 def map_lines(waves, names, dimension):
     """The map, its potential and its force, exactly, in lines.  names: as of amplitude_in()."""
-    letters, momenta = ["y"] if dimension == 1 else ["y0", "y1"], []
+    letters, momenta = ["y"] if dimension == 1 else ["y%d" % i for i in range(dimension)], []
     for i, letter in enumerate(letters):
         J = "J" + letter[1:]
         numbers, texts = terms(waves, names, letters, [wave.k[i] for wave in waves], 1)
         momenta.append("%s' = %s" % (J, sum_text([1, *numbers], [J, *texts])))
     potential = sum_text(*terms(waves, names, letters, [-1] * len(waves), 0))
     lines = ["THEOREM.  The map y' = y + J', J' = J - %s (modulo 2 pi)," % (
-        "V'(y) of one angle y" if dimension == 1 else "grad V(y) of two angles y")]
+        "%s(y) of %s y" % ("V'" if dimension == 1 else "grad V", NUMBERS[dimension]))]
     for text in "V(y) = " + potential, "that is, " + momenta[0], *momenta[1:]:
         lines += textwrap.wrap(text + ",", WIDTH, subsequent_indent="    ", break_long_words=False,
                                break_on_hyphens=False)
@@ -141,11 +143,11 @@ def is_boxed(claim):
 def successors(claim):
     """The y' after x* that are examined, in units of pi: (name, lower end, upper end) of each
     coordinate.  Of one angle, by step (C29), all that the region has of the first angle."""
-    if claim.dimension == 2:
+    if claim.dimension > 1:
         return [(name + " / pi", c - h, c + h)
                 for name, c, h in zip(ANGLES, claim.centre, claim.half)]
     c, h = [sum([f * x for f, x in zip(row, values)]) for row, values in (
-        (claim.frame[:2], claim.centre), (map(abs, claim.frame[:2]), claim.half))]
+        (claim.rows[0], claim.centre), (map(abs, claim.rows[0]), claim.half))]
     return [("y' / pi", c - h, c + h)]
 
 
@@ -166,7 +168,7 @@ def claimed(claim):
     lines = [*lines, *GRAPH[claim.dimension]]
     if not whole:
         lines += ["whose orbit goes from y = x* to y'%s in the region" % (
-                      (" = " + frame_text(claim.frame)) * (claim.dimension == 2)),
+                      (" = " + frame_text(claim.rows)) * (claim.dimension > 1)),
                   *[range_text(*ends) for ends in successors(claim)],
                   "(no other y' was examined, and the region is not the full torus)"]
     lines[-1] += " for any parameters with" * bool(ranges)
@@ -216,7 +218,7 @@ def report(claims, theorem, criterion, confirmed, pieces, doubles):
         bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
         if used:
             lines += ["Successors : %s; all others by %s" % (", ".join(
-                ["y' = " + frame_text(claim.frame)] * (claim.dimension == 2)
+                ["y' = " + frame_text(claim.rows)] * (claim.dimension > 1)
                 + [range_text(*ends) for ends in successors(claim)]), " and ".join(used))]
         lines += ["x*%s : %s" % (part.where and " of " + part.where, " ".join(
             map(decimal_text, part.xstar[:claim.dimension]))) for part in claims]

@@ -3,6 +3,7 @@
 import contextlib
 import math
 
+from .arith import dot
 from .claim import LETTERS
 from .criterion import Criterion
 from .failures import Unusable, named
@@ -54,7 +55,7 @@ class Problems:
         (n, cell), criterion = leaf, self.criterion(leaf[0])
         if n not in self.bent:
             self.bent[n] = float(sum([(abs(wave.middle) + sum(map(abs, wave.parts)))
-                                      * (wave.k[0] ** 2 + wave.k[1] ** 2)
+                                      * dot(wave.k, wave.k)
                                       for wave in self.claims[n].examined]))
         t = 2 * math.asin(min(math.sqrt(self.bent[n]) / 2, 1))
         far, l = (MAX_SITES + 0.5) * t, criterion.least_pivot(cell) / criterion.fixed.one

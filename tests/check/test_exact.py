@@ -45,7 +45,7 @@ def worst_step(names, draw, count):
             exactly = not any(p % one for p in (P, *[part for _, part in parts]))
             rounded = 0 if exactly else 1 + len(parts)          # products with sines
             unsure.append(draw.choice((0, 0, 5, one // 64)))
-            waves.append(names["PrismWave"](k0, k1, 0, P, parts, rounded + unsure[-1]))
+            waves.append(names["PrismWave"]((k0, k1), 0, P, parts, rounded + unsure[-1]))
         size = one // draw.choice((3, 5, 9, 99)) * 2 // known
         columns = [[whole(draw, size) for _ in range(known)] for _ in "01"]
         error = [draw.choice((0, 1, size // 4)) for _ in "01"]
@@ -60,13 +60,14 @@ def worst_step(names, draw, count):
         prism = names["Prism"](fixed, waves, centre[:2], (centre[2:], columns, error), known)
         lane, steps = prism.lanes[0], []
         while len(steps) < 4:
-            before, T, r = (lane.x0, lane.x), lane.T, lane.r
+            before, T, r = (lane.x0, lane.x), [row[known:] for row in lane.LT], lane.r
             if not lane.advance():
                 break
-            steps.append((*before, lane.x, lane.L, lane.T, lane.r))
-            for (k0, k1, *_), wave in zip(waves, lane.sites[-1].waves):
-                a, b = prism.turn
-                most = (abs(a * k0 + b * k1) * r[0] + abs(a * k1 - b * k0) * r[1]) / (a * a + b * b)
+            steps.append((*before, lane.x, *zip(*[(row[:known], row[known:]) for row in lane.LT]),
+                          lane.r))
+            for ((k0, k1), *_), wave in zip(waves, lane.sites[-1].waves):
+                most = sum(abs(arith.dot(row, (k0, k1))) * x
+                           for row, x in zip(prism.turn.rows, r)) / prism.turn.length
                 most += sum(abs(k0 * x + k1 * y) * (1 - (i == j) / 2)
                             for (i, j), x, y in zip(prism.pairs, *T))
                 worst = max(worst, quotient(most, wave.rest))
@@ -79,7 +80,7 @@ def worst_step(names, draw, count):
                    for row, rest in zip(columns, error)]
             for X0, X, X1, L, T, r in steps:
                 after = [2 * (a + u) - b - v - w for a, b, u, v, w in zip(new, old, X, X0, X1)]
-                for (k0, k1, _, P, parts, _), off in zip(waves, unsure):
+                for ((k0, k1), _, P, parts, _), off in zip(waves, unsure):
                     s, c = angles[k0 * X[0] + k1 * X[1]]
                     p = P + sum(part * e[i] for i, part in parts)
                     z = (k0 * new[0] + k1 * new[1]) / one
@@ -90,7 +91,7 @@ def worst_step(names, draw, count):
                 pairs = [e[i] * e[j] - (i == j) / 2 for i, j in prism.pairs]
                 gap = [x - sum(a * y for a, y in zip([*row, *form], [*e, *pairs]))
                        for x, row, form in zip(new, L, T)]
-                gap = arith.turned(prism.turn, gap)
+                gap = [arith.dot(row, gap) for row in prism.turn.rows]
                 worst = max(worst, *[quotient(abs(x), rest) for x, rest in zip(gap, r)])
         if worst > 1:
             break
@@ -104,7 +105,7 @@ def worst_errors(names, draw, count):
         bits = draw.choice((4, 6, 30))
         unit = 2 << bits                                    # of matrices
         fixed = types.SimpleNamespace(bits=bits)
-        a, b = turn = draw.choice(((1, 0), (1, 0), (1, 1), (2, -1)))
+        turn = arith.turn_of([(draw.choice(((1, 0), (1, 0), (1, 1), (2, -1))), 1)], 2)
         lane = names["Lane"](types.SimpleNamespace(fixed=fixed, turn=turn, waves=[], pairs=[]),
                              *[((0, 0), ((), ()), (0, 0))] * 2)
         before = [draw.choice((1, 1, 1 / 9, 40)) * draw.uniform(-2, 2) for _ in "012"]
@@ -118,18 +119,18 @@ def worst_errors(names, draw, count):
         known = lane.r
         if draw.random() < 0.2:                             # the first of the lane: f is -x[0]
             lane.d, before, f[:] = None, [0, 0, 0], known
-        if not lane.bound_errors(*beta, *error):
+        if not lane.bound_errors(beta, error):
             continue
         if lane.r0 != known:
             return math.inf
         for signs in itertools.product((-1, 1), repeat=6):
             x0, step, g = [[sign * x for sign, x in zip(signs[i:], pair)]
                            for i, pair in ((0, r0), (2, error), (4, f))]
-            x = [y / unit + z for y, z in zip(exact.matrix_times(before, x0), g)]
-            forces = exact.matrix_times(beta, (a * x[0] - b * x[1], b * x[0] + a * x[1]))
-            forces = [y / (a * a + b * b) for y in arith.turned(turn, forces)]
+            x = [y / unit + z for y, z in zip(arith.times(before, x0), g)]
+            forces = arith.times(beta, [arith.dot(row, x) for row in zip(*turn.rows)])
+            forces = [arith.dot(row, forces) / turn.length for row in turn.rows]
             new = [y / unit - u + z for y, u, z in zip(forces, x0, step)]
-            left = [y - z / unit for y, z in zip(new, exact.matrix_times(lane.d, x))]
+            left = [y - z / unit for y, z in zip(new, arith.times(lane.d, x))]
             worst = max(worst, *[quotient(abs(y), most)
                                  for y, most in zip(new + left, [*lane.r, *lane.f])])
         if worst > 1:
@@ -141,7 +142,8 @@ def some_sums(names, draw, down=0):
     """A sum with nothing in it, of few bits, and the bits of what is added to it."""
     names["UNIT_BITS"] = U = draw.choice((6, 8, 24))
     fixed, l = types.SimpleNamespace(bits=U + down), draw.randint(1, 1 << U + down)
-    prism = types.SimpleNamespace(fixed=fixed, symbols=2, waves=[], lanes=[])
+    prism = types.SimpleNamespace(fixed=fixed, symbols=2, waves=[], lanes=[],
+                                  turn=types.SimpleNamespace(rows=[[1, 0], [0, 1]]))
     return names["SecondVariation"](prism, l), U, l / (1 << down)
 
 
@@ -194,7 +196,8 @@ def worst_lane(names, draw, count):
     worst = 0
     for _ in range(count):
         sums, U, _ = some_sums(names, draw, 4)
-        sums.prism.waves = waves = [(1, 0), (2, -1)]
+        waves = (1, 0), (2, -1)
+        sums.prism.waves = [(k,) for k in waves]
         slopes = {}
         sums.add_wave = lambda wave, *known: slopes.setdefault(wave, (known, [
             whole(draw, 1 << U) for _ in "012"]))[1]
@@ -303,10 +306,12 @@ def test_an_attempt_adds_the_sites_of_its_vectors(bound):
     lanes = [types.SimpleNamespace(sites=sites, ended=True, follow=lambda most: None,
                                    moved=lambda symbol: 1) for sites in ("abc", "xyz")]
     prism = types.SimpleNamespace(fixed=types.SimpleNamespace(bits=64, one=1 << 64), lanes=lanes,
-                                  symbols=2, penalized=lambda site, penalties: site)
+                                  symbols=2, penalized=lambda site, penalties: site,
+                                  tail=lambda l: [l],
+                                  turn=types.SimpleNamespace(rows=[[1, 0], [0, 1]]))
     assert (names["attempt"](prism, 1, (0, 0)) is None) == (bound < 0)
     one = 1 << exact.VECTOR_BITS
-    ahead, back = [(0, 0), (one // 2, one)], [(2 * one, 0)]
+    ahead, back = [[0, 0], [one // 2, one]], [[2 * one, 0]]
     assert added == [("ab", ahead), ("x", back), ([ahead, back], None, None)]
 
 
@@ -315,5 +320,5 @@ def test_the_bound_of_a_cell_with_few_bits():
     fixed, draw = arith.fixed_of(10), random.Random(10)
     for _ in range(200):
         y = draw.randrange(-3 * fixed.one, 3 * fixed.one)
-        bound, value = torus.cell_bound(fixed, [(1, 0, 0)], [50 * fixed.one], [(1, 0)], (y, 0), 0)
+        bound, value = torus.cell_bound(fixed, [((1,), 0)], [50 * fixed.one], (y,), 0)
         assert min(bound, value) >= (2 - 50 * math.sin(y / fixed.one)) * fixed.one

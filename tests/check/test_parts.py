@@ -683,7 +683,7 @@ WRONG_STRUCTURE = {         # arguments of a file with two links -> a text; and 
     "undecided in a part": (lambda f: replaced(file_of(**with_part(
         f, 1, tree="0U" + tree_of_part(f, 1))), "undecided: 1", "undecided: 0"), "is undecided"),
     "a parameter that there is not": (lambda f: file_of(**with_part(
-        f, 1, tree="2PP")), "cuts a parameter that there is not"),
+        f, 1, tree="2PP")), "an angle or a parameter that there is not"),
     "symmetric in a part": (lambda f: file_of(**with_part(f, 0, tree="0S" + tree_of_part(f))),
                             "is skipped, but the problem is not symmetric"),
     "alone with links, of a product": (lambda f: file_of(**{**f, "waves": SYMMETRIC[:2],
