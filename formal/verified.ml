@@ -192,6 +192,8 @@ let fields lines =
       let at = i + 2 in
       if String.length line >= max_line then
         beyond "line %d is longer than the checker's limit, %d bytes" at (max_line - 1);
+      if cut_at ':' line = Some ("angles", " 3") then
+        beyond "the file is of three angles, and this checker is for two";
       let name, value = match cut_at ':' line with
         | Some (name, value) when value <> "" && value.[0] = ' '
                                   && List.mem name (known @ optional) ->
