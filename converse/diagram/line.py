@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any, Dict, List, NamedTuple, Tuple
 
 from . import none, some
-from .value import Diagram
+from .value import POINTS_A_SECOND, Diagram
 
 CELLS = 24                              # of the range, at first
 FINEST = 1 << 14                        # A cell with a torus is left out if so many fill the range.
@@ -71,7 +71,7 @@ def search(diagram: Diagram, filling, points: int, tell) -> None:
     """
     line = _Line(diagram)
     while diagram.points < points and not filling.late:
-        tasks, results = line.round(), {}       # type: List[Any], Dict[int, Any]
+        tasks, results = line.round(points), {}       # type: List[Any], Dict[int, Any]
         if not tasks:
             break
 
@@ -123,16 +123,20 @@ class _Line:
             " ".join(["hint", str(value), *itertools.chain(*xstars)])
             for value, xstars in self.hints] + self.tori.lines()
 
-    def round(self) -> List[Any]:
-        """The tasks that are done next."""
-        first, second = (self.tori.round, self._cells) if self.spent[1] < self.spent[0] else (
-            self._cells, self.tori.round)
+    def round(self, points: float) -> List[Any]:
+        """The tasks that are done next.  Tries at tori take at most half of the points of the
+        search."""
+        def tori():
+            return self.tori.round((points / 2 - self.spent[1]) / POINTS_A_SECOND)
+
+        first, second = (tori, self._cells) if self.spent[1] < self.spent[0] else (
+            self._cells, tori)
         return first() or second()
 
     def call(self, task) -> Tuple[Any, ...]:
         """The function that does a task, and its arguments."""
         if isinstance(task, some.Task):
-            return some.attempt, self.diagram.over(((task.value, task.value),)), task
+            return some.attempt, self.diagram.over((task.ends,)), task
         over, middle = (self.diagram.over((ends,)) for ends in (
             (task.low, task.high), (task.middle, task.middle)))
         return none.exclude, over, middle, self._near(task), task.points

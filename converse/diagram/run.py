@@ -14,10 +14,9 @@ from ..storage.files import ConverseError, Path
 from ..storage.signals import interruptible
 from . import cells, line
 from .sides import sides_of
-from .value import Diagram
+from .value import POINTS_A_SECOND, Diagram
 
 BUDGET = 300                            # seconds of one core, about
-POINTS_A_SECOND = 2 * 10 ** 6           # of orbits, about: what a second of the budget stands for
 
 
 def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = None,

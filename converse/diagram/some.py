@@ -7,28 +7,30 @@ to both ends of the run.  What is seen is floating point; the checker verifies e
 """
 
 import itertools
+import math
 from fractions import Fraction
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
+from ..model.exact import Ends
 from ..model.map import SymplecticMap
+from ..model.problem import Problem
 from ..storage.files import ConverseError
 from ..tori import prove
+from ..tori.continuation import POINTS
+from ..tori.effort import BALLS, LOOKING, SINGLE, Work
+from ..tori.find import Search
 from ..tori.proved import ProvedTorus
 from ..tori.regular import Orbits, regular
 from ..tori.torus import family as potential_of
-from .value import Diagram, Seen
+from .value import POINTS_A_SECOND, Diagram, Seen
 
 # By the number of angles.  First GRID parts of the range are looked at; then gaps between values,
 # down to 1/PARTS of the range, and where a torus is seen at one end only down to 1/FINEST.
 GRID, PARTS, FINEST = {1: 16, 2: 8}, {1: 1 << 8, 2: 1 << 5}, {1: 1 << 15, 2: 1 << 9}
 SEEN = 1e-9                             # turns: an orbit that changes less is taken for a torus
-MESH = {1: (1 << 12, 1 << 15, 1 << 18), 2: (1 << 20,)}          # sizes of meshes
+EFFORTS = {1: (4, 16, 64), 2: (64, 256)}        # seconds that a try may take, about
+LEAST = {1: 2, 2: 20}                   # No try begins with less.
 BORDERS, LOOKS, PROOFS = 2, 2, 1        # of a round
-# What costs as much time as so many points of orbits: a look; a proof, and each mode of its series;
-# a try that fails, and each point of its mesh.
-LOOK = {1: 1_300_000, 2: 9_000_000}
-PROOF, MODE = {1: 2_200_000, 2: 50_000_000}, 400
-FAILURE, POINT = {1: 2_200_000, 2: 35_000_000}, {1: 24, 2: 50}
 
 
 class _Stopped(Exception):
@@ -36,10 +38,18 @@ class _Stopped(Exception):
 
 
 class Task(NamedTuple):
-    """A value to look at, or with points > 0 to prove a torus at, on a mesh of so many points."""
+    """A value to look at; with effort > 0 one to prove a torus at, or between `back` and it, within
+    so many seconds of work."""
 
     value: Fraction
-    points: int = 0
+    effort: float = 0
+    back: Optional[Fraction] = None
+
+    @property
+    def ends(self) -> Ends:
+        """The range of the task."""
+        first, last = sorted((self.value, self.value if self.back is None else self.back))
+        return first, last
 
 
 class Outcome(NamedTuple):
@@ -53,12 +63,12 @@ class Outcome(NamedTuple):
 
 def attempt(family: SymplecticMap, task: Task, stop: Callable[[], bool] = bool
             ) -> Optional[Outcome]:
-    """Does a task at a map.  A worker calls it; None if it was stopped.
+    """Does a task.  A worker calls it; None if it was stopped.
 
     Parameters
     ----------
     family
-        The map at the value.
+        The part of the family over the range of the task.
     task
         The task.
     stop
@@ -68,36 +78,40 @@ def attempt(family: SymplecticMap, task: Task, stop: Callable[[], bool] = bool
         if stop():
             raise _Stopped
 
-    n = family.dimension
+    rotation = torus = None
+    work = Work(step, most=task.effort or math.inf)
     try:
-        step()
-        if not task.points:
+        if task.effort:
+            most = task.effort / (SINGLE * BALLS)       # points on which there is time to refine
+            search = Search(Problem.of(family), min(POINTS, int(most)), None, work)
+            torus = prove(search.farthest(1 if task.value == task.ends[1] else -1), progress=work)
+        else:
+            work("looking for regular orbits", LOOKING[family.dimension])
             best = next(iter(regular(Orbits(potential_of(family)[0]))), None)
-            return Outcome(LOOK[n], best.rotation if best and best.change < SEEN else None, None)
-        torus = prove(family, points=task.points, progress=step)
+            rotation = best.rotation if best and best.change < SEEN else None
     except _Stopped:
         return None
-    except ConverseError:               # not found, or not confirmed
-        return Outcome(FAILURE[n] + POINT[n] * task.points, None, None)
-    return Outcome(PROOF[n] + MODE * torus.worst.modes, None, torus)
+    except ConverseError:               # not found, too dear, or not confirmed
+        pass
+    return Outcome(round(POINTS_A_SECOND * work.spent), rotation, torus)
 
 
 class Runs:
     """The state of the search for tori along a line.
 
     looks -- of each value that was looked at the rotation vector that is seen, or None.
-    tried -- of each value with a try without success the largest mesh."""
+    tried -- of each value with a try the largest effort."""
 
     def __init__(self, diagram: Diagram, lines: Sequence[Sequence[str]]) -> None:
         self.diagram = diagram
         self.n = diagram.family.dimension
         self.looks: Dict[Fraction, Optional[Tuple[float, ...]]] = {}
-        self.tried: Dict[Fraction, int] = {}
+        self.tried: Dict[Fraction, float] = {}
         for kind, value, *words in lines:
             if kind == "look":
                 self.looks[Fraction(value)] = tuple(map(float, words)) or None
-            else:
-                self.tried[Fraction(value)] = int(words[0])
+            elif kind == "effort":
+                self.tried[Fraction(value)] = float(words[0])
         low, high = diagram.ranges[0]
         self.low, self.high = low, min(high, max((end for _, end in diagram.open), default=high))
         self.grain = (high - low) / FINEST[self.n]
@@ -106,24 +120,28 @@ class Runs:
         """The state, for the file."""
         return [" ".join(["look", str(value), *map(repr, seen or ())])
                 for value, seen in sorted(self.looks.items())] + [
-            "tried %s %d" % item for item in sorted(self.tried.items())]
+            "effort %s %r" % item for item in sorted(self.tried.items())]
 
-    def round(self) -> List[Task]:
-        """What is done next: looks at a grid, then tries to prove, and looks."""
+    def round(self, seconds: float = math.inf) -> List[Task]:
+        """What is done next: looks at a grid, and as soon as a torus is seen a try to prove one;
+        then tries, and looks.
+
+        seconds -- No try may take more."""
         grid = [nice(self.low + (self.high - self.low) * i / GRID[self.n], self.grain)
                 for i in range(GRID[self.n] + 1)]
         new = [Task(value) for value in dict.fromkeys(grid) if not self._is_known(value)]
-        return new[:BORDERS + LOOKS] or [*self._proofs(), *self._looks()]
+        tries = [] if new and self.diagram.tori else self._proofs(seconds)
+        return [*tries, *(new[:BORDERS + LOOKS] or self._looks())]
 
     def take(self, task: Task, outcome: Optional[Outcome]) -> None:
         """Records what became of a task; None: it was not done."""
         if outcome is None:
             return
         self.diagram.points += outcome.points
-        if not task.points:
+        if task.effort:
+            self.tried[task.value] = task.effort
+        else:
             self.looks[task.value] = outcome.rotation
-        elif outcome.torus is None:
-            self.tried[task.value] = task.points
         proved = {each.low for each in self.diagram.tori}
         self.diagram.seen = [Seen((value,), seen) for value, seen in sorted(self.looks.items())
                              if seen and value not in proved]
@@ -157,11 +175,12 @@ class Runs:
             low <= value <= high for low, high in self.diagram.none) or not any(
             wave.middle + value * wave.parts[0] for wave in self.diagram.waves)
 
-    def _proofs(self):
-        """The tries that are next, with the smallest mesh first, and where the part of a run that
-        is not proved is widest."""
+    def _proofs(self, seconds=math.inf):
+        """The tries that are next: where the part of a run that is not proved is widest for the
+        effort."""
         tries = [each for run in self.runs() for each in self._of_run(run)]
-        return [Task(value, size) for size, _, value in sorted(tries)[:PROOFS]]
+        return [task._replace(effort=min(task.effort, seconds)) for _, task in sorted(
+            tries) if seconds >= LEAST[self.n]][:PROOFS]
 
     def _proved(self):
         return [value for each in self.diagram.tori for value in {each.low, each.high}]
@@ -183,28 +202,32 @@ class Runs:
         values and both ends."""
         middle, proved = len(run) // 2, [x for x in self._proved() if run[0] <= x <= run[-1]]
         if not proved:
-            return self._next(None, run[middle:]) or self._next(None, run[:middle][::-1])
+            return self._next(run[0], run[middle:], False) or self._next(
+                run[-1], run[:middle][::-1], False)
         low, high = min(proved), max(proved)
         found = self._next(high, [x for x in run if x > high])
         if run[0] > self._values()[0]:
             found += self._next(low, [x for x in reversed(run) if x < low])
         return found
 
-    def _next(self, start, values):
-        """(size, less the width of the part, value) of a try at one of the values, which are ever
-        less likely to succeed: in the middle of those before the first at which a try with this
-        mesh failed.  Then between the start, where a torus is proved, and the first value."""
-        width = self.low - self.high
-        if start is not None:
+    def _next(self, start, values, proved=True):
+        """(less the width of the part for each second, Task) of a try at one of the values, which
+        are ever less likely to succeed: in the middle of those before the first at which a try with
+        this effort failed.  Then between the start, where a torus is proved, and the first value.
+        """
+        if proved:
             values = [value for value in values if abs(value - start) > self.grain]
-            width = -abs(values[-1] - start) if values else width
-        for size in MESH[self.n]:
-            left = list(itertools.takewhile(lambda value: self.tried.get(value, 0) < size, values))
-            if left:
-                return [(size, width, left[len(left) // 2])]
-        if start is None or not values or abs(values[0] - start) <= 2 * self.grain:
+        if not values:
             return []
-        return [(size, width, nice((start + values[0]) / 2, self.grain))]
+        width = float(abs(values[-1] - start) if proved else self.high - self.low)
+        for effort in EFFORTS[self.n]:
+            left = list(itertools.takewhile(
+                lambda value: self.tried.get(value, 0) < effort, values))
+            if left:
+                return [(-width / effort, Task(left[len(left) // 2], effort, start))]
+        if not proved or abs(values[0] - start) <= 2 * self.grain:
+            return []
+        return [(-width / effort, Task(nice((start + values[0]) / 2, self.grain), effort, start))]
 
 
 def nice(value: Fraction, grain: Fraction) -> Fraction:

@@ -9,13 +9,13 @@ computation counts as zero.
 """
 
 from math import inf, log
-from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from ..model.potential import FourierSum
 from ..storage.files import ConverseError
-from .effort import LAYER_BYTES, REFINING_BYTES, SOLVING, free_memory, some
+from .effort import LAYER_BYTES, REFINING_BYTES, SOLVING, Work, free_memory
 from .newton import EPSILON, Mesh, best_frame, default_frame
 from .regular import Orbit, Orbits
 from .rotation import Rotation
@@ -96,12 +96,11 @@ class Way:
 
     def __init__(self, potential: FourierSum, rotation: Rotation, points: int,
                  first: np.ndarray, last: np.ndarray,
-                 tell: Callable[[str], None] = lambda words: None,
-                 memory: Optional[int] = None,
+                 tell: Optional[Work] = None, memory: Optional[int] = None,
                  named: Sequence[Tuple[str, float, float]] = ()) -> None:
         self.potential, self.rotation, self.frame = potential, rotation, default_frame(potential)
         self.points, self.first, self.last, self.chosen = points, first, last, False
-        self.tell, self.memory, self.named = tell, memory, named
+        self.tell, self.memory, self.named = tell or Work(), memory, named
 
     def place(self, part: float) -> str:
         """Where a part of the way leads, in words."""
@@ -136,9 +135,11 @@ class Way:
                 raise self._not_found(last, found == TOO_LARGE, break_up(bends[-FITTED:]))
         return known[-1]
 
-    def of_orbit(self, orbits: Orbits, orbit: Orbit) -> Union[Found, str, None]:
-        """The torus at the end of the way on which an orbit lies, as far as there is one.  None:
-        Newton's method failed; TOO_LARGE: the mesh would be."""
+    def of_orbit(self, orbits: Orbits, orbit: Orbit,
+                 points: Optional[int] = None) -> Union[Found, float]:
+        """The torus at the end of the way on which an orbit lies; with `points` that on a mesh of
+        so many points.  Where there is none, the least error that Newton's method leaves; infinity:
+        it fails."""
         n, amplitude = self.potential.dimension, self.amplitude(1.0)
         k, c = orbits.series(orbit, self.rotation, REACH[n])
         if n == 2:
@@ -146,22 +147,26 @@ class Way:
         box = np.full(len(self._straight().mesh.sizes), float(REACH[n]))
         mesh, before, rounds = self.mesh(2 * box), inf, 0
         u = mesh.spread(k, c)
-        while mesh.points <= self.points:
-            self.tell("looking for the torus of an orbit, on %d points%s" % (
-                mesh.points, some(SOLVING * mesh.points)))
+        while mesh.points <= (points or self.points):
+            self.tell("looking for the torus of an orbit, on %d points" % mesh.points,
+                      SOLVING * mesh.points)
             keep = np.all([abs(m) <= 2 * b for m, b in zip(mesh.m, box)], 0) & mesh.inside
             solved = newton(mesh, u, amplitude, keep, SEEN)
             rounds = 0 if solved and solved[1] < DOWN * before else rounds + 1
             if solved is None or rounds == WEARY:
-                return None
+                return inf
             u, before = solved[0], min(before, solved[1])
             if before <= STALLED:
-                found = self._solved(1.0, self._measured(1.0, mesh, u), u)
-                return self._solved(1.0, found, found.u, 0.0) if isinstance(found, Found) else found
+                found = self._measured(1.0, mesh, u)
+                for least in (ENOUGH, 0.0) * (points is None):
+                    found = self._solved(1.0, found, found.u, least)
+                    if not isinstance(found, Found):
+                        return before if found == TOO_LARGE else inf
+                return found
             box *= GROWTH[n]
             larger = self.mesh(2 * box)
             u, mesh = mesh.moved(u, larger), larger
-        return TOO_LARGE
+        return before
 
     def _framed(self, found):
         """The torus in the frame in which its modes fill the smallest box, chosen once."""
@@ -199,8 +204,8 @@ class Way:
         mesh, keep, more = last.mesh, last.keep, 1.0
         amplitude = self.amplitude(part)
         for _ in range(ENLARGED):
-            self.tell("looking for the torus at %s, on %d points%s" % (
-                self.place(part), mesh.points, some(SOLVING * mesh.points)))
+            self.tell("looking for the torus at %s, on %d points" % (
+                self.place(part), mesh.points), SOLVING * mesh.points)
             solved = newton(mesh, u, amplitude, keep)
             if solved is None:
                 return None

@@ -10,33 +10,69 @@ from ..storage.files import ConverseError
 
 Tell = Callable[[str], None]
 
+# Seconds to look for regular orbits, and to follow one and plan its torus, by the number of angles;
+# to choose vectors near one orbit.
+LOOKING, PLANNING, CHOOSING = {1: 0.65, 2: 4.5}, {1: 0.4, 2: 1.5}, 0.7
 # Seconds for each point of a grid: Newton's method in doubles, and an error with many digits.
-SOLVING, BALLS = 4e-6, 1.0e-5
+SOLVING, BALLS = 2e-6, 1.0e-5
 SHORT, LONGER = 128, 1.6    # Balls of more than SHORT bits take LONGER times as long.
 # Refining a torus takes as long as SINGLE errors with many digits.  If it is a polynomial in the
 # parameter, each point of sigma takes REFINING.
 SINGLE, REFINING = 2.5, 2
+# Seconds for each mode of a torus, to verify it, by the number of angles.
+VERIFYING = {1: 2.5e-4, 2: 5e-4}
 # Bytes for each point of a grid while a torus is refined, and more for each point of sigma.
 REFINING_BYTES, LAYER_BYTES = 1300, 100
 
 
 class TimeIsUp(ConverseError):
-    """The time limit of find() or prove() is over; the text names the step that was to begin."""
+    """The time limit of find() or prove(), or the effort of a Work, is over; the text names the
+    step that was to begin."""
 
 
-def limited(progress: Optional[Tell], time_limit: float) -> Tell:
-    """progress, or a function that does nothing; from time_limit seconds on it raises TimeIsUp."""
-    if not time_limit >= 0:
-        raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
-    end = time.monotonic() + time_limit
+class Work:
+    """Tells of the steps of a calculation when they begin, and ends it.
 
-    def tell(step: str) -> None:
-        if time.monotonic() >= end:
+    Parameters
+    ----------
+    progress
+        progress(text) is called with each step.
+    time_limit
+        Seconds from now on, after which no step begins.
+    most
+        No step begins that would take the estimates of all steps above so many seconds.
+
+    Attributes
+    ----------
+    spent
+        The sum of the estimates, which depend on sizes alone and not on the machine.
+    """
+
+    def __init__(self, progress: Optional[Tell] = None, time_limit: float = math.inf,
+                 most: float = math.inf) -> None:
+        if not time_limit >= 0:
+            raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
+        self.progress, self.limit, self.end = progress, time_limit, time.monotonic() + time_limit
+        self.most, self.spent = most, 0.0
+
+    def __call__(self, step: str, seconds: float = 0.0, later: float = 0.0) -> None:
+        """Begins a step of about so many seconds, which is in vain without later ones of so many.
+        """
+        if time.monotonic() >= self.end:
             raise TimeIsUp("the %g seconds of the time limit are over; the next step was: %s"
-                           % (time_limit, step))
-        if progress is not None:
-            progress(step)
-    return tell
+                           % (self.limit, step))
+        if self.spent + seconds + later > self.most:
+            raise TimeIsUp("more than %g seconds are needed; the next step was: %s" % (
+                self.most, step))
+        self.spent += seconds
+        if self.progress is not None:
+            self.progress(step + some(seconds))
+
+
+def limited(progress: Optional[Tell], time_limit: float) -> Work:
+    """The Work that tells `progress` of its steps, which may be such a Work itself."""
+    return progress if isinstance(progress, Work) and time_limit == math.inf else Work(
+        progress, time_limit)
 
 
 def balls(points: int, bits: int) -> float:

@@ -10,19 +10,23 @@ import numpy as np
 from ..model.exact import Ends, short_text
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
-from .continuation import POINTS, TOO_LARGE, Found, NotFound, Way, ellipse, newton, place
-from .effort import BALLS, REFINING, SINGLE, SOLVING, balls, limited, some
+from .continuation import POINTS, Found, NotFound, Way, ellipse, newton, place
+from .effort import (BALLS, CHOOSING, LOOKING, PLANNING, REFINING, SINGLE, SOLVING, VERIFYING,
+                     TimeIsUp, Work, balls, limited)
 from .nearest import Place, nearest, rotation_of
 from .newton import Frame, Mesh
 from .plan import MARGIN, Weights, plan
 from .refinement import SPARE_BITS, Modes, accepted, layers_for, numbers_of, refined, taken
-from .regular import Orbit, Orbits, regular, with_rotation, with_vectors
+from .regular import Orbit, Orbits, apart, near_vectors, regular, with_rotation
 from .rotation import Rotation
 from .torus import Torus, family
 
 __all__ = ["NotFound", "find"]
 
 ENOUGH = 3                  # From so many tori the one is chosen that needs the fewest modes.
+SMALL = 1 << 15             # Points of the mesh on which the vectors of two angles are compared.
+NEAR = 6                    # Rotation vectors are looked for near so many orbits of two angles.
+APART = 3e-4                # Of vectors that differ by less, in turns, the best is tried.
 ROUNDS = 3                  # This often the number of modes is chosen.
 # The lengths of pieces are chosen for DEGREE in sigma; they have LEAST_DEGREE to MOST_DEGREE.
 LEAST_DEGREE, DEGREE, MOST_DEGREE = 4, 21, 26
@@ -30,6 +34,8 @@ LAYERS = 32                 # Points of the circle of sigma; tori are computed a
 LARGEST = 1 << 23           # Points of the mesh times the degree are at most about this.
 NARROWEST = 1e-5            # A piece of s is at least about this long.
 ALL = 0.93                  # A piece that could cover this part of the rest takes all of it.
+# The s that farthest() tries when s = 1 is too dear.
+RETREAT = Fraction(7, 8), Fraction(3, 4), Fraction(1, 2), Fraction(0)
 MOST_MARGIN = 1e100         # Coefficients times 2^bits are doubles on their way to integers.
 
 
@@ -100,7 +106,7 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str, N
     elif rotation is not None:
         way, found = search.found(rotation)
     else:
-        way, found = search.most_regular()
+        way, found, _ = search.most_regular()
         if part is not None:            # so far at the end where V is larger
             way, found = search.found(way.rotation)
     if part is None:
@@ -111,8 +117,7 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str, N
 class Search:
     """Looks for tori of a problem, each at the lower end of its range, if it has one."""
 
-    def __init__(self, problem: Problem, points: int, memory: Optional[int],
-                 tell: Callable[[str], None]) -> None:
+    def __init__(self, problem: Problem, points: int, memory: Optional[int], tell: Work) -> None:
         self.potential, self.part = family(problem)
         self.points, self.memory, self.tell = points, memory, tell
         source = problem.map
@@ -135,10 +140,11 @@ class Search:
             low: Optional[float] = None, high: float = 0.0) -> Way:
         """The way between two amplitudes: those of the parameter s from low to high, or, with
         None, from where all parameters are 0 to the end of the range."""
-        begin, end = (self.at(s) for s in ((self._end(),) * 2 if low is None else (low, high)))
-        return Way(self.potential, rotation, self.points, first, last, self.tell, self.memory, [
+        to = self._end() if low is None else high
+        potential = self.potential._replace(amplitude=self._exact(Fraction(to)))
+        return Way(potential, rotation, self.points, first, last, self.tell, self.memory, [
             (name, 0.0 if low is None else value, there)
-            for (name, value), (_, there) in zip(begin, end)])
+            for (name, value), (_, there) in zip(self.at(to if low is None else low), self.at(to))])
 
     def at(self, s: float) -> List[Tuple[str, float]]:
         """The parameters at s."""
@@ -182,49 +188,76 @@ class Search:
 
     def _of_its_orbit(self, rotation):
         orbits = self._orbits(self._end())
-        return self._made(orbits, with_rotation(orbits, rotation), rotation, self._end())
+        return self._made(orbits, with_rotation(orbits, rotation), rotation, self._end())[:2]
 
     def _made(self, orbits, orbit, rotation, s):
-        """The torus of an orbit."""
-        way = self.way(rotation, self.amplitude(s), self.amplitude(s), float(s), float(s))
+        """The torus of an orbit, and the orbit."""
+        way = self._at(rotation, s)
         found = way.of_orbit(orbits, orbit)
         if isinstance(found, Found):
-            return way, found
+            return way, found, orbit
         raise NotFound("an orbit of the rotation vector (%s) was followed at %s, but no torus was "
                        "made of it%s" % (", ".join("%.9f" % w for w in rotation.floats),
                                          way.place(1.0), " on %d points" % self.points * (
-                                             found == TOO_LARGE)), 0.0, self.amplitude(s))
+                                             found < inf)), 0.0, self.amplitude(s))
 
-    def most_regular(self) -> Tuple[Way, Found]:
-        """Of the tori of the most regular orbits the one that needs the fewest modes."""
-        s = self._end()
-        if self.part is not None and abs(self.amplitude(1)).sum() > abs(self.amplitude(-1)).sum():
-            s = 1
-        seen, best = self.seen(s)
-        if best is None:
-            why = "%d regular orbits are seen, but no torus was made of them" % len(seen) if seen \
-                else "no orbit is seen that is regular and not resonant"
-            raise NotFound("at %s %s; a rotation vector may be given (converse-tori --rotation)" % (
-                place(self.at(s), self.amplitude(s)), why), 0.0, self.amplitude(s).tolist())
-        return best
+    def _at(self, rotation, s):
+        """The way that stays at s."""
+        return self.way(rotation, self.amplitude(s), self.amplitude(s), float(s), float(s))
 
-    def seen(self, s: int) -> Tuple[List[Orbit], Optional[Tuple[Way, Found]]]:
-        """The most regular orbits, and of their tori the one that needs the fewest modes."""
-        orbits = self._orbits(s)
-        self.tell("looking for regular orbits at %s" % place(self.at(s), self.amplitude(s)))
-        made: List[Tuple[Way, Found]] = []
-        seen = regular(orbits)
-        for orbit in with_vectors(orbits, seen):
-            assert orbit.vector is not None
-            self.tell("looking for a torus near (%s)" % ", ".join(
-                "%.6f" % w for w in orbit.rotation))
+    def farthest(self, sign: int) -> Torus:
+        """A torus, as near to s = sign as the effort of `tell` permits to refine and verify it: of
+        the most regular orbits there, or of the same rotation vector."""
+        way, found, orbit = self.most_regular(sign)
+        for s in RETREAT if self.part else ():
             try:
+                return _single(found, way, MARGIN)
+            except (NotFound, TimeIsUp):
+                orbits = self._orbits(s * sign)
+                orbit = with_rotation(orbits, way.rotation, orbit)
+                way, found, _ = self._made(orbits, orbit, way.rotation, s * sign)
+        return _single(found, way, MARGIN)
+
+    def _roughness(self, orbits, orbit, s):
+        """The error of Newton's method, on a small mesh, for the torus of an orbit."""
+        found = self._at(orbit.vector, s).of_orbit(orbits, orbit, SMALL)
+        return 0.0 if isinstance(found, Found) else found
+
+    def most_regular(self, sign: int = 0) -> Tuple[Way, Found, Orbit]:
+        """Of the tori of the most regular orbits the one that needs the fewest modes, and its
+        orbit: at s = sign, by default at the end where V is larger.
+
+        With two angles the change of an orbit does not tell the good vectors, since it is a
+        rounding error.  The error of Newton's method on a small mesh does."""
+        s, n = self._end(), self.potential.dimension
+        if self.part is not None and (sign or abs(self.amplitude(1)).sum()
+                                      - abs(self.amplitude(-1)).sum()) > 0:
+            s = 1
+        orbits, where = self._orbits(s), place(self.at(s), self.amplitude(s))
+        self.tell("looking for regular orbits at %s" % where, LOOKING[n])
+        made: List[Tuple[Way, Found, Orbit]] = []
+        listed = seen = regular(orbits)
+        if n == 2:
+            self.tell("looking for rotation vectors", CHOOSING * len(seen[:NEAR]))
+            listed = apart(sorted(near_vectors(orbits, seen[:NEAR]), key=lambda orbit:
+                                  self._roughness(orbits, orbit, s)), APART)
+        for orbit in listed:
+            assert orbit.vector is not None
+            try:
+                self.tell("looking for a torus near (%s)" % ", ".join(
+                    "%.6f" % w for w in orbit.rotation), PLANNING[n])
                 made.append(self._made(orbits, orbit, orbit.vector, s))
-            except NotFound:
-                pass
+            except (NotFound, TimeIsUp) as error:
+                if isinstance(error, TimeIsUp) and not made:
+                    raise
             if len(made) == ENOUGH:
                 break
-        return seen, min(made, key=lambda each: plan(each[1]).modes(each[1].mesh), default=None)
+        if made:
+            return min(made, key=lambda each: plan(each[1]).modes(each[1].mesh))
+        raise NotFound("at %s %s; a rotation vector may be given (converse-tori --rotation)" % (
+            where, "%d regular orbits are seen, but no torus was made of them" % len(seen) if seen
+            else "no orbit is seen that is regular and not resonant"), 0.0,
+            self.amplitude(s).tolist())
 
 
 def _doubles(numbers):
@@ -249,27 +282,33 @@ def _amplitudes(potential, rotation, start):
 
 def _single(found, way, margin):
     """The torus of one potential.  How many modes it needs is known from its decay in doubles, and
-    then from the error that is left."""
-    more, torus, error, norm = 1.0, None, None, None
+    then from the error that is left.  Near break-up the largest modes stand far apart.  So the next
+    mesh is larger."""
+    more, torus, points = 1.0, None, 0
     for turn in range(1, ROUNDS + 1):
         aim = plan(found, margin, more)
-        mesh = aim.mesh(found.mesh)
+        while (mesh := aim.mesh(found.mesh)).points <= points:
+            more *= 1.1
+            aim = plan(found, margin, more)
         way.check_cost(mesh.points)
-        modes = Modes(mesh, aim.keep(mesh))
+        modes, points = Modes(mesh, aim.keep(mesh)), mesh.points
         bits = aim.bits(modes.k, 0, margin)
         # Modes below the noise stay: they belong to the errors of the others, and cancel in E.
         numbers = numbers_of(modes.picked(found.mesh.moved(found.u, mesh))[None], bits) \
             if torus is None else taken(modes, bits, torus)
-        way.tell("refining a torus of %d modes%s" % (
-            len(modes.at), some(SINGLE * balls(mesh.points, bits + SPARE_BITS))))
-        before, norm = norm, (mesh.sizes, aim.alpha)
-        torus, ratio, error = refined(
+        way.tell("refining a torus of %d modes" % len(modes.at),
+                 SINGLE * balls(mesh.points, bits + SPARE_BITS),
+                 VERIFYING[way.potential.dimension] * len(modes.at))
+        torus, ratio = refined(
             Torus(way.potential, None, way.rotation, bits, modes.k.T, numbers, aim.strip), modes,
-            aim, margin, error if norm == before else None, turn == ROUNDS)
+            aim, margin, turn == ROUNDS)
         if ratio <= accepted(margin):
-            break
+            return torus
         more *= 1.05 + log(ratio * margin) / ((aim.rate - aim.rho) * aim.size)
-    return torus
+    if ratio < 1:
+        return torus
+    raise NotFound("the torus is seen, but with %d modes its error is %.2g times what the theorem "
+                   "admits" % (len(modes.at), ratio), 1.0, [float(p) for p in way.last])
 
 
 # ---- a range
@@ -396,10 +435,9 @@ class _Pieces:
         begun = Torus(self.potential, self.part, self.rotation, bits, source.k.T,
                       numbers_of(c[:degree + 1], bits), aim.strip, piece)
         torus = replace(begun, k=modes.k.T, numbers=taken(modes, bits, begun))
-        self.tell("refining the tori of %s, %d modes of degree %d%s" % (
-            _range_text(piece), len(modes.at), degree,
-            some(REFINING * BALLS * mesh.points * layers)))
-        torus, ratio, _ = refined(torus, modes, aim, self.margin)
+        self.tell("refining the tori of %s, %d modes of degree %d" % (
+            _range_text(piece), len(modes.at), degree), REFINING * BALLS * mesh.points * layers)
+        torus, ratio = refined(torus, modes, aim, self.margin)
         if ratio <= 10 / self.margin:
             return torus
         self.more *= 1.2                # a shorter piece with as few modes may fail, too
@@ -414,8 +452,8 @@ class _Pieces:
         source = Modes(mesh, keep & (abs(mesh.k).max(0) > 0))
         half = (ends[-1].amplitude - ends[0].amplitude) / 2
         half_circle = range(LAYERS // 2 + 1)
-        self.tell("looking for the tori of %s, on %d points%s" % (
-            _range_text(piece), mesh.points, some(SOLVING * mesh.points * len(half_circle))))
+        self.tell("looking for the tori of %s, on %d points" % (
+            _range_text(piece), mesh.points), SOLVING * mesh.points * len(half_circle))
         circle = []
         for l in half_circle:
             sigma = np.exp(2j * np.pi * l / LAYERS)

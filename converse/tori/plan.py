@@ -16,7 +16,8 @@ from .rotation import Rotation
 from .torus import Strip
 
 MARGIN = 100.0              # Factor by which the error of a torus is to be below what is needed.
-WEIGHTS = 1, 2, 3, 4, 5, 6, 8, 10, 12, 16       # Ratios of alpha that are tried.
+WEIGHTS = 1, 2, 3, 4, 5, 6, 8, 10, 12, 16       # ratios of alpha
+TRIED = 3                   # So many are tried, those nearest to the ratio of the rates of decay.
 # E is computed for |k| up to EDGE times the longest mode that matters.  The torus takes up to ROOM
 # of these, so that most of what it leaves in E is seen.
 EDGE, ROOM = 1.13, 0.9
@@ -90,13 +91,16 @@ def plan(found: Found, margin: float = MARGIN, more: float = 1.0,
     theorem = _Needed(found)
     if alpha is not None or found.mesh.potential.dimension == 1:
         return theorem.plan(alpha or (1,), margin, more)
-    choices = [(1, a) for a in WEIGHTS] + [(a, 1) for a in WEIGHTS[1:]]
+    ratio = found.rates[0] / found.rates[1]
 
     def cost(each):
         aim = theorem.plan(each, margin, 1)
         sizes = sizes_holding(found.mesh.potential, found.mesh.frame, aim.box(found.mesh))
         return np.prod(sizes), aim.size ** 2 / float(np.prod(each))
-    return theorem.plan(min(choices, key=cost), margin, more)
+
+    choices = [(1, a) for a in WEIGHTS] + [(a, 1) for a in WEIGHTS[1:]]
+    choices.sort(key=lambda each: abs(log2(ratio * each[1] / each[0])))
+    return theorem.plan(min(choices[:TRIED], key=cost), margin, more)
 
 
 def _length(frame, alpha, k):

@@ -17,7 +17,7 @@ from ..storage.files import ConverseError, Path
 from ..storage.kept import Kept
 from ..storage.methods import provided
 from . import certificate
-from .effort import Tell, limited
+from .effort import VERIFYING, Tell, Work, limited
 from .find import find
 from .nearest import Place, rotation_of
 from .rotation import Rotation
@@ -160,7 +160,7 @@ class ProvedTorus(Kept):
         NotProved
             The checker does not confirm the torus.
         """
-        return _verified(certificate.read(path).tori, jobs, lambda text: None)
+        return _verified(certificate.read(path).tori, jobs, Work())
 
 
 def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
@@ -261,7 +261,8 @@ def _verified(tori, jobs, tell, keep=None):
         raise ValueError("the tori are of different potentials, rotation vectors or norms")
     if keep is not None:
         keep(text)
-    tell("verifying the torus" if len(tori) == 1 else "verifying %d pieces" % len(tori))
+    tell("verifying the torus" if len(tori) == 1 else "verifying %d pieces" % len(tori), sum(
+        VERIFYING[torus.dimension] * len(torus.k) * (torus.degree + 1) for torus in tori))
     try:
         claim = check.content(text.encode())
         _, facts = check.verify_torus(claim, lambda words: tell("verifying: " + words), jobs)

@@ -2,8 +2,7 @@
 asks for (converse/tori/precise.py).
 
 That is slow, so the error is computed once, or twice: what a correction changes in it is known to
-as many digits in doubles (Mesh.change).  With another norm on the same mesh it is not computed
-anew.
+as many digits in doubles (Mesh.change).
 
 The coefficients may be polynomials in sigma, the variable of a range of amplitudes.  They are then
 corrected at points of the circle |sigma| = 1, from where Cauchy's formula, a Fourier transform,
@@ -13,7 +12,7 @@ leads back to the polynomials.
 from dataclasses import replace
 from itertools import repeat
 from math import inf
-from typing import Iterator, List, NamedTuple, Optional, Tuple
+from typing import Iterator, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -27,8 +26,6 @@ STEPS = 8                   # Newton's method then takes at most these steps.
 SPARE_BITS = 8              # The error has these bits more than the coefficients.
 # An error of LACKING/margin of the admissible one will do, if it is at most SURE of it.
 LACKING, SURE = 4.0, 0.05
-
-Error = List[np.ndarray]    # E as `errors` gives it: an array for each sigma
 
 
 class Modes:
@@ -123,12 +120,9 @@ def accepted(margin: float) -> float:
 
 
 def refined(torus: Torus, modes: Modes, plan: Plan, margin: float,
-            error: Optional[Error] = None, last: bool = True
-            ) -> Tuple[Torus, float, Optional[Error]]:
-    """The torus after as many corrections as help; about ||E||_rho over what the theorem needs; and
-    E, on a real mesh.
+            last: bool = True) -> Tuple[Torus, float]:
+    """The torus after as many corrections as help, and about ||E||_rho over what the theorem needs.
 
-    error -- E, if it is known
     last -- if not, a torus that needs more modes is not corrected further"""
     mesh, before = modes.mesh, inf
     layers = 1 if mesh.real else layers_for(torus.degree)
@@ -140,9 +134,8 @@ def refined(torus: Torus, modes: Modes, plan: Plan, margin: float,
                        np.exp(np.minimum(plan.rho * length, 600)), 0)
     enough = plan.needed / 2 / margin
     for _ in range(TURNS):
-        if error is None:
-            error = list(errors(mesh, torus, layers, weights > 0, max(64, torus.bits + SPARE_BITS)))
-        v, size, rest, known = _corrected(torus, modes, error, weights, amplitudes, layers, enough)
+        error = list(errors(mesh, torus, layers, weights > 0, max(64, torus.bits + SPARE_BITS)))
+        v, size, rest = _corrected(torus, modes, error, weights, amplitudes, layers, enough)
         if v is None:                   # the error of the same torus would be the same
             break
         torus = replace(torus, numbers=torus.numbers + numbers_of(v, torus.bits))
@@ -150,28 +143,26 @@ def refined(torus: Torus, modes: Modes, plan: Plan, margin: float,
         if size - rest <= enough or size <= most or not size < before / 4 \
                 or rest > most and not last:
             break
-        before, error = size, None
+        before = size
     torus, more = pruned(torus, plan, enough / 4)
-    return torus, (size + more) / plan.needed, known
+    return torus, (size + more) / plan.needed
 
 
 class _Left(NamedTuple):
     """v -- a correction of u, None for none.
     size -- about the norm of E(u + v).
-    rest -- its part in modes and powers of sigma that the torus cannot have.
-    error -- E(u + v), on a real mesh."""
+    rest -- its part in modes and powers of sigma that the torus cannot have."""
 
     v: Optional[np.ndarray]
     size: float
     rest: float
-    error: Optional[Error]
 
 
 def _corrected(torus, modes, error, weights, amplitudes, layers, enough):
     """Takes several steps of Newton's method, given E(u) as `errors` gives it.  The correction is
     so small that doubles will do.  In norms modes are counted with their weights e^{rho |k|}; on
     the circle the largest norm is taken."""
-    mesh, u, best = modes.mesh, torus.doubles, _Left(None, inf, 0.0, None)
+    mesh, u, best = modes.mesh, torus.doubles, _Left(None, inf, 0.0)
     weights = weights * (2 if mesh.real else 1)         # which has one of k and -k, about
     rest = weights * ~modes.keep
     v = None
@@ -189,7 +180,7 @@ def _corrected(torus, modes, error, weights, amplitudes, layers, enough):
             powers = modes.series(iter(now), layers)[torus.degree + 1:]
             beyond += 2 * float(np.sqrt((abs(powers) ** 2).sum(1)).sum(0)
                                 @ weights.ravel()[modes.at])
-        found = _Left(v, size, beyond, now if mesh.real else None)
+        found = _Left(v, size, beyond)
         if not found.size < best.size:
             break
         stalled, best = found.size > best.size / 2, found

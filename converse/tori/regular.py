@@ -44,12 +44,11 @@ SIDE, LENGTH = 96, 500                  # the grid, and the points of a half, do
 STAGES = ((800, 7, 1e-5), (700, 7, 1e-5), (500, 12, 1e-6), (350, 45, 3e-8), (250, 45, 3e-8),
           (150, 45, 3e-8), (100, 45, 3e-8))
 CHILDREN = 4
-# Near the rotation vectors of so many orbits, then of the best of those found, there are looked for
-# NEIGHBOURS vectors of fields, within this.
-NEAR, NEIGHBOURS = ((12, Fraction(1, 1000)), (6, Fraction(1, 4000))), 8
+# Near a rotation vector, within this, NEIGHBOURS vectors of fields are looked for.
+WITHIN, NEIGHBOURS = Fraction(1, 1000), 8
 WALK, WALKED = 10, 1 << 14               # steps to a rotation vector, points of a half
 FAR = 0.003                             # |k.omega - m| |k|^2 is larger for good vectors.
-APART, ALIKE = 3e-3, 1e-5               # vectors that are listed differ by so much; exact ones
+APART = 3e-3                            # Vectors that are listed differ by so much.
 CHAOTIC = 1e-5                          # Orbits that change more are not listed.
 
 
@@ -154,20 +153,13 @@ def regular(orbits: Orbits) -> List[Orbit]:
     return [orbit for orbit in found if orbit.change < CHAOTIC]
 
 
-def with_vectors(orbits: Orbits, seen: Sequence[Orbit]) -> List[Orbit]:
-    """The most regular orbits that have exact rotation vectors, near those that are seen.
-
-    Of two angles all orbits that are seen may be regular to rounding, and most vectors near them
-    lie in gaps between the tori.  So an orbit is looked for of each of several vectors."""
-    if orbits.n == 1:
-        return list(seen)
-    best, known = list(seen), []        # type: List[Orbit], List[Orbit]
-    for kept, within in NEAR:
-        for near in best[:kept]:
-            known += [with_rotation(orbits, vector, near)._replace(vector=vector)
-                      for vector in cubics(near.rotation, within, NEIGHBOURS)]
-        best = _apart(sorted(known, key=lambda orbit: orbit.change), ALIKE)
-    return best[:KEPT]
+def near_vectors(orbits: Orbits, seen: Sequence[Orbit]) -> List[Orbit]:
+    """Orbits of two angles with exact rotation vectors, several near each of those that are seen:
+    these may all be regular to rounding, and most vectors near them lie in gaps between the tori.
+    """
+    known = [with_rotation(orbits, vector, near)._replace(vector=vector) for near in seen
+             for vector in cubics(near.rotation, WITHIN, NEIGHBOURS)]
+    return [orbit for orbit in known if orbit.change < CHAOTIC]
 
 
 def with_rotation(orbits: Orbits, rotation: Rotation, near: Optional[Orbit] = None) -> Orbit:
@@ -262,11 +254,11 @@ def _on_a_grid(orbits, target=None):
             width = np.repeat(width, CHILDREN, 0)
             near += width * (random.random(near.shape) - 0.5)
             p, width = np.concatenate([p, near]), np.concatenate([2 * width[::CHILDREN], width]) / 2
-    return _apart([Orbit(tuple(w.tolist()), float(size), tuple(start.tolist()))
+    return apart([Orbit(tuple(w.tolist()), float(size), tuple(start.tolist()))
                    for w, size, start in zip(omega, change, p)], APART)
 
 
-def _apart(listed, least):
+def apart(listed, least):
     """Of orbits those whose rotation vectors differ so much from those listed before."""
     found: List[Orbit] = []
     for orbit in listed:

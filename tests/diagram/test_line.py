@@ -4,9 +4,9 @@ from fractions import Fraction as F
 
 import pytest
 
-from converse import FourierMap, diagram
+from converse import FourierMap, diagram, tori
 from converse.diagram import Diagram, line, none, some
-from converse.diagram.value import Existence
+from converse.diagram.value import POINTS_A_SECOND, Existence
 from converse.model.problem import Problem
 
 
@@ -95,36 +95,44 @@ def test_values_that_are_seen_next_to_each_other_are_a_run():
 
 def test_the_first_torus_of_a_run_is_looked_for_above_its_middle():
     runs = runs_of({"0": None, "0.1": None, "0.2": .2, "0.3": .2, "0.4": .2, "0.5": None})
-    small, *_, large = some.MESH[1]
-    assert runs._proofs() == [some.Task(F("0.4"), small)]
-    runs.tried[F("0.4")] = small
-    assert runs._proofs() == [some.Task(F("0.3"), small)]
-    runs.tried.update({F("0.3"): large, F("0.4"): large})
-    assert runs._proofs() == [some.Task(F("0.2"), small)]
+    least, *_, most = some.EFFORTS[1]
+    assert runs._proofs() == [some.Task(F("0.4"), least, F("0.2"))]
+    runs.tried[F("0.4")] = least
+    assert runs._proofs() == [some.Task(F("0.3"), least, F("0.2"))]
+    runs.tried.update({F("0.3"): most, F("0.4"): most})
+    assert runs._proofs() == [some.Task(F("0.2"), least, F("0.4"))]
 
 
 @pytest.mark.parametrize("last", [F("0.8"), F("0.55"), F("0.41")])
 def test_a_run_is_proved_up_to_the_last_value_that_can_be(monkeypatch, last):
-    """Tries fail beyond a value, which no look is near; with smaller meshes sooner."""
+    """Tries fail beyond a value, which no look is near; with less effort sooner."""
     proved = [F(0)]
     monkeypatch.setattr(some.Runs, "_proved", lambda self: proved)
     runs = runs_of({"0": .2, "0.2": .2, "0.4": .2, "0.8": .2, "0.81": .2, "0.9": None})
     for _ in range(60):
-        for value, size in runs._proofs():
-            if value <= last * size / some.MESH[1][-1]:
+        for value, effort, back in runs._proofs():
+            assert back == max(proved)
+            if value <= last * effort / some.EFFORTS[1][-1]:
                 proved.append(value)
             else:
-                runs.tried[value] = size
+                runs.tried[value] = effort
     assert 0 <= last - max(proved) <= 3 * runs.grain and not runs._proofs()
 
 
-def test_the_grid_is_looked_at_before_a_torus_is_proved():
+def test_a_torus_is_tried_as_soon_as_one_is_seen_and_then_the_grid_is_looked_at():
     runs = some.Runs(Diagram.of(cosines(K1=(0, 1))), [])
-    while len(runs.looks) <= some.GRID[1]:
-        assert all(task.points == 0 for task in runs.round())
-        for task in runs.round():
-            runs.take(task, some.Outcome(1, (0.2,), None))
-    assert [task.points for task in runs.round()] == [some.MESH[1][0]] + [0] * some.LOOKS
+    assert [task.effort for task in runs.round()] == [0] * (some.BORDERS + some.LOOKS)
+    for task in runs.round():
+        runs.take(task, some.Outcome(1, (0.2,), None))
+    first, *looks = runs.round()
+    assert first.effort == some.EFFORTS[1][0] and not any(task.effort for task in looks)
+    runs.diagram.add(tori.prove(cosines(K1=("0.1", "0.1")), points=1 << 12))
+    assert not any(task.effort for task in runs.round())
+
+
+def test_no_try_takes_more_than_is_left():
+    runs = runs_of({"0": .2, "0.1": .2, "0.2": None})
+    assert runs._proofs(some.LEAST[1])[0].effort == some.LEAST[1] and not runs._proofs(1.9)
 
 
 def test_nothing_is_looked_for_where_v_is_0():
@@ -137,13 +145,23 @@ def test_nothing_is_looked_for_where_v_is_0():
 def test_a_try_at_a_torus_ends_at_the_step_after_it_is_told_to():
     """Two angles may take minutes, and Ctrl-C waits for the try."""
     family, asked = FourierMap({1: "0.9"}), []
-    assert some.attempt(family, some.Task(F(0), 1 << 15), lambda: asked.append(1) or False).torus
+    assert some.attempt(family, some.Task(F(0), 60), lambda: asked.append(1) or False).torus
     steps = len(asked)
     for last in 1, steps // 2:
         asked.clear()
-        assert some.attempt(family, some.Task(F(0), 1 << 15),
+        assert some.attempt(family, some.Task(F(0), 60),
                             lambda: asked.append(1) or len(asked) == last) is None
         assert len(asked) == last
+
+
+def test_a_try_takes_no_more_than_its_effort():
+    """The golden circle at 0.9714 is seen for 6 seconds; the proof comes from a smaller value."""
+    family = FourierMap({1: {"K": 1}}, K=("0.95", "0.9714"))
+    found = some.attempt(family, some.Task(F("0.9714"), 6, F("0.95")))
+    assert found.points <= 6 * POINTS_A_SECOND
+    (wave, value), = zip(*found.torus.torus.potential[:2])
+    assert F("0.95") < value < F("0.9714")
+    assert some.attempt(family, some.Task(F("0.9714"), 1, F("0.95"))).torus is None
 
 
 def test_values_have_few_decimals():
