@@ -17,7 +17,7 @@ from ..model.problem import Problem
 from ..storage.files import ConverseError
 from ..tori import prove
 from ..tori.continuation import POINTS
-from ..tori.effort import BALLS, LOOKING, SINGLE, Work
+from ..tori.effort import LOOKING, Work
 from ..tori.find import Search
 from ..tori.proved import ProvedTorus
 from ..tori.regular import Orbits, regular
@@ -30,6 +30,7 @@ GRID, PARTS, FINEST = {1: 16, 2: 8}, {1: 1 << 8, 2: 1 << 5}, {1: 1 << 15, 2: 1 <
 SEEN = 1e-9                             # turns: an orbit that changes less is taken for a torus
 EFFORTS = {1: (4, 16, 64), 2: (64, 256)}        # seconds that a try may take, about
 LEAST = {1: 2, 2: 20}                   # No try begins with less.
+POINT = 1e-4                            # seconds of a proof for each point of its mesh, at least
 BORDERS, LOOKS, PROOFS = 2, 2, 1        # of a round
 
 
@@ -82,8 +83,7 @@ def attempt(family: SymplecticMap, task: Task, stop: Callable[[], bool] = bool
     work = Work(step, most=task.effort or math.inf)
     try:
         if task.effort:
-            most = task.effort / (SINGLE * BALLS)       # points on which there is time to refine
-            search = Search(Problem.of(family), min(POINTS, int(most)), None, work)
+            search = Search(Problem.of(family), min(POINTS, int(task.effort / POINT)), None, work)
             torus = prove(search.farthest(1 if task.value == task.ends[1] else -1), progress=work)
         else:
             work("looking for regular orbits", LOOKING[family.dimension])

@@ -34,8 +34,8 @@ LAYERS = 32                 # Points of the circle of sigma; tori are computed a
 LARGEST = 1 << 23           # Points of the mesh times the degree are at most about this.
 NARROWEST = 1e-5            # A piece of s is at least about this long.
 ALL = 0.93                  # A piece that could cover this part of the rest takes all of it.
-# The s that farthest() tries when s = 1 is too dear.
-RETREAT = Fraction(7, 8), Fraction(3, 4), Fraction(1, 2), Fraction(0)
+# The s that farthest() tries.
+RETREAT = Fraction(1), Fraction(7, 8), Fraction(3, 4), Fraction(1, 2), Fraction(0)
 MOST_MARGIN = 1e100         # Coefficients times 2^bits are doubles on their way to integers.
 
 
@@ -106,7 +106,7 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str, N
     elif rotation is not None:
         way, found = search.found(rotation)
     else:
-        way, found, _ = search.most_regular()
+        way, found = search.most_regular()
         if part is not None:            # so far at the end where V is larger
             way, found = search.found(way.rotation)
     if part is None:
@@ -188,14 +188,14 @@ class Search:
 
     def _of_its_orbit(self, rotation):
         orbits = self._orbits(self._end())
-        return self._made(orbits, with_rotation(orbits, rotation), rotation, self._end())[:2]
+        return self._made(orbits, with_rotation(orbits, rotation), rotation, self._end())
 
     def _made(self, orbits, orbit, rotation, s):
-        """The torus of an orbit, and the orbit."""
+        """The torus of an orbit."""
         way = self._at(rotation, s)
         found = way.of_orbit(orbits, orbit)
         if isinstance(found, Found):
-            return way, found, orbit
+            return way, found
         raise NotFound("an orbit of the rotation vector (%s) was followed at %s, but no torus was "
                        "made of it%s" % (", ".join("%.9f" % w for w in rotation.floats),
                                          way.place(1.0), " on %d points" % self.points * (
@@ -207,57 +207,77 @@ class Search:
 
     def farthest(self, sign: int) -> Torus:
         """A torus, as near to s = sign as the effort of `tell` permits to refine and verify it: of
-        the most regular orbits there, or of the same rotation vector."""
-        way, found, orbit = self.most_regular(sign)
-        for s in RETREAT if self.part else ():
+        the most regular orbits there, or of orbits of the same rotation vectors."""
+        listed, failure = self._regular(self._orbits(sign), sign)[1], None
+        for s in RETREAT if self.part else (1,):
+            orbits = self._orbits(s * sign)
+            if s < 1:
+                listed = [with_rotation(orbits, each.vector, each)._replace(vector=each.vector)
+                          for each in listed[:ENOUGH]]
             try:
+                way, found, orbit = self._best(orbits, listed, s * sign)
+                listed = [orbit]
                 return _single(found, way, MARGIN)
-            except (NotFound, TimeIsUp):
-                orbits = self._orbits(s * sign)
-                orbit = with_rotation(orbits, way.rotation, orbit)
-                way, found, _ = self._made(orbits, orbit, way.rotation, s * sign)
-        return _single(found, way, MARGIN)
+            except (NotFound, TimeIsUp) as error:
+                failure = error
+        assert failure is not None
+        raise failure
 
     def _roughness(self, orbits, orbit, s):
         """The error of Newton's method, on a small mesh, for the torus of an orbit."""
         found = self._at(orbit.vector, s).of_orbit(orbits, orbit, SMALL)
         return 0.0 if isinstance(found, Found) else found
 
-    def most_regular(self, sign: int = 0) -> Tuple[Way, Found, Orbit]:
-        """Of the tori of the most regular orbits the one that needs the fewest modes, and its
-        orbit: at s = sign, by default at the end where V is larger.
+    def most_regular(self) -> Tuple[Way, Found]:
+        """Of the tori of the most regular orbits the one that needs the fewest modes, at the end
+        where V is larger."""
+        s = self._end()
+        if self.part is not None and abs(self.amplitude(1)).sum() > abs(self.amplitude(-1)).sum():
+            s = 1
+        orbits = self._orbits(s)
+        seen, listed = self._regular(orbits, s)
+        try:
+            return self._best(orbits, listed, s)[:2]
+        except NotFound:
+            raise NotFound("at %s %s; a rotation vector may be given (converse-tori --rotation)" % (
+                place(self.at(s), self.amplitude(s)), "%d regular orbits are seen, but no torus "
+                "was made of them" % len(seen) if seen else "no orbit is seen that is regular and "
+                "not resonant"), 0.0, self.amplitude(s).tolist()) from None
+
+    def _regular(self, orbits, s):
+        """The most regular orbits, and orbits with exact rotation vectors, the best first.
 
         With two angles the change of an orbit does not tell the good vectors, since it is a
         rounding error.  The error of Newton's method on a small mesh does."""
-        s, n = self._end(), self.potential.dimension
-        if self.part is not None and (sign or abs(self.amplitude(1)).sum()
-                                      - abs(self.amplitude(-1)).sum()) > 0:
-            s = 1
-        orbits, where = self._orbits(s), place(self.at(s), self.amplitude(s))
-        self.tell("looking for regular orbits at %s" % where, LOOKING[n])
-        made: List[Tuple[Way, Found, Orbit]] = []
-        listed = seen = regular(orbits)
-        if n == 2:
-            self.tell("looking for rotation vectors", CHOOSING * len(seen[:NEAR]))
-            listed = apart(sorted(near_vectors(orbits, seen[:NEAR]), key=lambda orbit:
+        n = self.potential.dimension
+        self.tell("looking for regular orbits at %s" % place(self.at(s), self.amplitude(s)),
+                  LOOKING[n])
+        seen = regular(orbits)
+        if n == 1:
+            return seen, seen
+        self.tell("looking for rotation vectors", CHOOSING * len(seen[:NEAR]))
+        return seen, apart(sorted(near_vectors(orbits, seen[:NEAR]), key=lambda orbit:
                                   self._roughness(orbits, orbit, s)), APART)
+
+    def _best(self, orbits: Orbits, listed: List[Orbit],
+              s: Union[Fraction, int]) -> Tuple[Way, Found, Orbit]:
+        """Of the tori of the first orbits that have one the one that needs the fewest modes."""
+        made: List[Tuple[Way, Found, Orbit]] = []
         for orbit in listed:
             assert orbit.vector is not None
             try:
                 self.tell("looking for a torus near (%s)" % ", ".join(
-                    "%.6f" % w for w in orbit.rotation), PLANNING[n])
-                made.append(self._made(orbits, orbit, orbit.vector, s))
+                    "%.6f" % w for w in orbit.rotation), PLANNING[self.potential.dimension])
+                made.append((*self._made(orbits, orbit, orbit.vector, s), orbit))
             except (NotFound, TimeIsUp) as error:
                 if isinstance(error, TimeIsUp) and not made:
                     raise
             if len(made) == ENOUGH:
                 break
-        if made:
-            return min(made, key=lambda each: plan(each[1]).modes(each[1].mesh))
-        raise NotFound("at %s %s; a rotation vector may be given (converse-tori --rotation)" % (
-            where, "%d regular orbits are seen, but no torus was made of them" % len(seen) if seen
-            else "no orbit is seen that is regular and not resonant"), 0.0,
-            self.amplitude(s).tolist())
+        if not made:
+            raise NotFound("no torus was made of the regular orbits", 0.0,
+                           self.amplitude(s).tolist())
+        return min(made, key=lambda each: plan(each[1]).modes(each[1].mesh))
 
 
 def _doubles(numbers):
