@@ -25,7 +25,7 @@ from ..tori.torus import family as potential_of
 from .value import POINTS_A_SECOND, Diagram, Seen
 
 # By the number of angles.  First GRID parts of the range are looked at; then gaps between values,
-# down to 1/PARTS of the range, and where a torus is seen at one end only down to 1/FINEST.
+# down to 1/PARTS of what is open, and where a torus is seen at one end only down to 1/FINEST.
 GRID, PARTS, FINEST = {1: 16, 2: 8}, {1: 1 << 8, 2: 1 << 5}, {1: 1 << 15, 2: 1 << 9}
 SEEN = 1e-9                             # turns: an orbit that changes less is taken for a torus
 EFFORTS = {1: (4, 16, 64), 2: (64, 256)}        # seconds that a try may take, about
@@ -153,13 +153,13 @@ class Runs:
     def _looks(self):
         """The middles of the widest gaps between known values, where a torus is seen at one end,
         and elsewhere."""
-        ends = self._values()
+        ends, open_parts = self._values(), self.diagram.open
+        part = (open_parts[-1][1] - open_parts[0][0]) / PARTS[self.n] if open_parts else 0
         gaps: Tuple[List[Any], List[Any]] = ([], [])
         for a, b in zip(ends, ends[1:]):
             border = bool(self.looks.get(a)) != bool(self.looks.get(b))
             middle = nice((a + b) / 2, self.grain)
-            if b - a > (self.grain if border else self.grain * FINEST[self.n] / PARTS[self.n]) \
-                    and not self._is_known(middle):
+            if b - a > (self.grain if border else part) and not self._is_known(middle):
                 gaps[border].append((a - b, middle))
         return [Task(middle) for each, most in zip(gaps, (LOOKS, BORDERS))
                 for _, middle in sorted(each)[:most]]

@@ -130,6 +130,16 @@ def test_a_torus_is_tried_as_soon_as_one_is_seen_and_then_the_grid_is_looked_at(
     assert not any(task.effort for task in runs.round())
 
 
+def test_gaps_are_looked_at_down_to_a_share_of_what_is_open(monkeypatch):
+    """Circles come back in windows that are small parts of the range."""
+    runs = runs_of({})
+    runs.looks.update({F(i, 300): None for i in range(61)})
+    assert not runs._looks()            # The whole range is open, and these gaps are small.
+    monkeypatch.setattr(Diagram, "none", [(F("0.2"), F(1))])
+    assert len(runs._looks()) == some.LOOKS
+    assert all(task.value < F("0.2") for task in runs._looks())
+
+
 def test_no_try_takes_more_than_is_left():
     runs = runs_of({"0": .2, "0.1": .2, "0.2": None})
     assert runs._proofs(some.LEAST[1])[0].effort == some.LEAST[1] and not runs._proofs(1.9)
