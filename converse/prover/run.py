@@ -251,7 +251,7 @@ class _Run:
         if not look():
             self.search.work(self.threads, look)
         if not self._look():
-            self.search = Shared(task, self.search.parts(), self.pool, setting_up,
+            self.search = Shared(task, self.search.pieces(), self.pool, setting_up,
                                  self.on_leaf is not None)
 
     def _is_late(self):
@@ -372,7 +372,7 @@ class _Run:
         """Tells whoever wants to know how far things are.  Returns whether the work is to end."""
         self.view = self.search.view()
         if self.on_leaf:
-            known, seen = self.search.parts()[0], self.seen
+            known, seen = self.search.pieces()[0], self.seen
             self.seen = len(known.text)
             self._tell(known.text[seen:], known.steps[seen:])
         if self.progress:
@@ -394,13 +394,13 @@ class _Run:
         """The proof as it stands."""
         proof = self.proof
         if self.search is not None:
-            parts = self.search.parts()
-            text = "".join([part.text + tree.UNTRIED * len(part.cells) for part in parts])
+            pieces = self.search.pieces()
+            text = "".join([piece.text + tree.UNTRIED * len(piece.cells) for piece in pieces])
             nodes = dict(zip(tree.NODES, tree.count(text)))     # an undecided prism drops some
-            counts = sum((part.counts for part in parts), self.counts_before)
+            counts = sum((piece.counts for piece in pieces), self.counts_before)
             proof = replace(proof.with_tree(
                 self.number, text=text.rstrip(tree.UNTRIED),
-                pending=tuple(hint for part in parts for _, _, hint in part.cells)),
+                pending=tuple(hint for piece in pieces for _, _, hint in piece.cells)),
                 counts=replace(counts, **nodes))
         if proof.parts:
             proof = replace(proof, counts=counted(proof))

@@ -1,4 +1,4 @@
-"""The tree of a search as parts, which threads of this process grow, or the workers of an executor.
+"""The tree of a search as pieces, which threads of this process or the workers of an executor grow.
 
 The verdict on a prism depends on the prism and on the hint from its parent, which goes with it.  So
 the tree, its statistics and the theorem are the same however the work is divided."""
@@ -38,43 +38,43 @@ def volume(cells):
     return sum(0.5 ** sum(cuts) for _, cuts, _ in cells)
 
 
-def settled(parts, stubborn):
+def settled(pieces, stubborn):
     """Parts that follow each other, as Grown; those at the beginning of which nothing is left to do
     are one.  What lies beyond an undecided prism that ends the search does not count."""
     first, rest = Grown(), []
-    for part in parts:
-        end = -1 if stubborn else part.text.find("U")
+    for piece in pieces:
+        end = -1 if stubborn else piece.text.find("U")
         if end >= 0:
-            part = replace(part, text=part.text[:end + 1], steps=part.steps[:end + 1], cells=[])
+            piece = replace(piece, text=piece.text[:end + 1], steps=piece.steps[:end + 1], cells=[])
         if first.cells or rest:
-            rest.append(part)
+            rest.append(piece)
         else:
-            first = first.followed_by(part)
+            first = first.followed_by(piece)
         if end >= 0:
             break
     return [first, *rest]
 
 
 def taken_up(search, depth, text, hints):
-    """A tree as parts.  WrongTree: no such search can have grown it.
+    """A tree as pieces.  WrongTree: no such search can have grown it.
 
     hints: of the first untried prisms, in their order; the others have 0."""
-    parts, walk, hints = [], tree.Walk(), iter(hints)
+    pieces, walk, hints = [], tree.Walk(), iter(hints)
     most = [native.lib.CV_INDEX_BITS * search.has_axis(axis) for axis in range(len(tree.CUTS))]
     missing = tree.untried(text) - text.count(tree.UNTRIED)
     try:
-        for piece in PIECE.findall(text + tree.UNTRIED * missing):
+        for chunk in PIECE.findall(text + tree.UNTRIED * missing):
             cells = []
-            for kind, (index, cuts) in walk.feed(piece):
+            for kind, (index, cuts) in walk.feed(chunk):
                 if sum(cuts) > depth or any(map(int.__gt__, cuts, most)) or kind == "S" and not (
                         search.skips and index[1] << cuts[0] >= index[0] + 1 << cuts[1]):
                     raise native.WrongTree()
                 if kind == tree.UNTRIED:
                     cells.append((index, cuts, next(hints, 0)))
-            parts.append(Grown(piece.rstrip(tree.UNTRIED), cells=cells))
+            pieces.append(Grown(chunk.rstrip(tree.UNTRIED), cells=cells))
     except tree.TreeError:
         raise native.WrongTree() from None
-    return parts
+    return pieces
 
 
 class Growth:
@@ -84,8 +84,8 @@ class Growth:
         self.search, self.stubborn, self.want_steps = search, settings.stubborn, want_steps
         self.begun = settled(taken_up(search, settings.depth, text, hints), self.stubborn)
         if want_steps:
-            self.begun = [replace(part, steps=[OLD] * len(part.text)) for part in self.begun]
-        self.cells = [cell for part in self.begun for cell in part.cells]
+            self.begun = [replace(piece, steps=[OLD] * len(piece.text)) for piece in self.begun]
+        self.cells = [cell for piece in self.begun for cell in piece.cells]
         search.restart(self.cells)
 
     def work(self, *limits):
@@ -98,45 +98,45 @@ class Growth:
         return View(grown.counts, grown.counts, 1.0 - volume(self.cells) + grown.examined,
                     grown.finished or not self.cells, grown.needs_long)
 
-    def parts(self):
-        """The tree as it is: parts that follow each other, the first of which is all that is
+    def pieces(self):
+        """The tree as it is: pieces that follow each other, the first of which is all that is
         settled, and the cells after it."""
-        grown, parts, at = self.search.view(True, self.want_steps), [], 0
+        grown, pieces, at = self.search.view(True, self.want_steps), [], 0
         cells = iter(grown.cells)
-        for part in self.begun:
-            begin, left = at, len(part.cells)       # to be decided
-            if part is self.begun[-1]:
+        for piece in self.begun:
+            begin, left = at, len(piece.cells)      # to be decided
+            if piece is self.begun[-1]:
                 at, left = len(grown.text), len(grown.cells)
             while left and at < len(grown.text):
                 left += 1 if grown.text[at] in tree.CUTS else -1
                 at += 1
-            parts.append(part.followed_by(Grown(
+            pieces.append(piece.followed_by(Grown(
                 grown.text[begin:at], grown.steps[begin:at], cells=list(islice(cells, left)))))
-        parts[0] = replace(parts[0], counts=grown.counts)
-        return settled(parts, self.stubborn)
+        pieces[0] = replace(pieces[0], counts=grown.counts)
+        return settled(pieces, self.stubborn)
 
 
 class Shared:
-    """A tree whose parts are given to the workers of an executor.  The list of parts is replaced
+    """A tree whose pieces are given to the workers of an executor.  The list of pieces is replaced
     and never changed, so that it is whole whenever an exception comes."""
 
-    def __init__(self, task, parts, pool, seconds, want_steps):
+    def __init__(self, task, pieces, pool, seconds, want_steps):
         """seconds: of the setting up."""
         self.task, self.pool, self.want_steps = task, pool, want_steps
         self.seconds = max(TASK_SECONDS, TASK_RATIO * seconds)
         self.needs_long = False         # may a prism need longer orbits than the task allows?
-        self.known = parts
+        self.known = pieces
 
-    def parts(self):
-        """As Growth.parts."""
+    def pieces(self):
+        """As Growth.pieces."""
         self.known = settled(self.known, self.task.settings.stubborn)
         return self.known
 
     def view(self):
         """As Growth.view."""
-        parts = self.parts()
-        cells = [cell for part in parts for cell in part.cells]
-        return View(sum((part.counts for part in parts), Counts()), parts[0].counts,
+        pieces = self.pieces()
+        cells = [cell for piece in pieces for cell in piece.cells]
+        return View(sum((piece.counts for piece in pieces), Counts()), pieces[0].counts,
                     1.0 - volume(cells), not cells, self.needs_long)
 
     def work(self, _, look):
@@ -144,33 +144,33 @@ class Shared:
         self.pool.work(self._next_task, self._take, look)
 
     def _next_task(self):
-        """The first cells on which nobody works.  The parts that wait are divided before, until
-        there are as many as tasks are wanted, if possible: the last cell of a part is the largest,
+        """The first cells on which nobody works.  The pieces that wait are divided before, until
+        there are as many as tasks are wanted, if possible: the last cell of a piece is the largest,
         since it was cut least."""
         busy = {id(cells) for _, cells, *_ in self.pool.running.values()}
-        waiting = [part for part in self.known if part.cells and id(part.cells) not in busy]
+        waiting = [piece for piece in self.known if piece.cells and id(piece.cells) not in busy]
         while waiting and len(waiting) < self.pool.size - len(busy):
-            part = max(waiting, key=lambda part: len(part.cells))
-            if len(part.cells) == 1:
+            piece = max(waiting, key=lambda piece: len(piece.cells))
+            if len(piece.cells) == 1:
                 break
-            halves = replace(part, cells=part.cells[:-1]), Grown(cells=part.cells[-1:])
-            self._replace(part.cells, halves)
-            at = waiting.index(part)
+            halves = replace(piece, cells=piece.cells[:-1]), Grown(cells=piece.cells[-1:])
+            self._replace(piece.cells, halves)
+            at = waiting.index(piece)
             waiting[at:at + 1] = halves
         return (waiting[0].cells, grow, self.task, waiting[0].cells, self.seconds,
                 self.want_steps) if waiting else None
 
     def _take(self, cells, grown):
-        for part in self.known:
-            if part.cells is cells:     # else an undecided prism before it ended the search
+        for piece in self.known:
+            if piece.cells is cells:    # else an undecided prism before it ended the search
                 self.needs_long |= grown.needs_long
-                self._replace(cells, [part.followed_by(grown)])
+                self._replace(cells, [piece.followed_by(grown)])
                 break
 
-    def _replace(self, cells, parts):
-        """Puts parts in the place of the one with these cells."""
-        at = [id(part.cells) for part in self.known].index(id(cells))
-        self.known = [*self.known[:at], *parts, *self.known[at + 1:]]
+    def _replace(self, cells, pieces):
+        """Puts pieces in the place of the one with these cells."""
+        at = [id(piece.cells) for piece in self.known].index(id(cells))
+        self.known = [*self.known[:at], *pieces, *self.known[at + 1:]]
 
 
 def grow(task, cells, seconds, want_steps):

@@ -981,7 +981,7 @@ def test_a_search_that_was_busy_takes_up_a_tree():
             search.grow([((5, 9, 1, 0, 0), (4, 4, 1, 0, 0), 0), (*ROOT, 0)], busy)
         growth = Growth(search, task.settings, "20", [])    # there are three cells
         growth.work(1, bool)
-        texts.append(growth.parts()[0].text)
+        texts.append(growth.pieces()[0].text)
     assert len(texts[0]) > 50 and texts == [texts[0]] * 4
 
 

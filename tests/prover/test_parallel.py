@@ -462,7 +462,7 @@ def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
     for stubborn, text in (False, "0U"), (True, "0UP"):
         task = native.Task(LONG, Settings("loewner", stubborn=stubborn))
         grown = shared.Shared(task, [part("0U"), part("P")], None, 0.0, False)
-        view, (first,) = grown.view(), grown.parts()
+        view, (first,) = grown.view(), grown.pieces()
         assert view.finished and first.text == text
         assert (view.counts.proved, view.counts.undecided) == (int(stubborn), 1)
 
@@ -473,4 +473,4 @@ def test_one_prism_that_may_need_a_longer_orbit_is_remembered():
     search = shared.Shared(native.Task(LONG, Settings()), tasks, None, 0.0, False)
     for task, needs_long in zip(tasks, (True, False)):
         search._take(task.cells, native.Grown("P", needs_long=needs_long))
-    assert search.view().needs_long and [part.text for part in search.parts()] == ["PP"]
+    assert search.view().needs_long and [part.text for part in search.pieces()] == ["PP"]

@@ -289,7 +289,7 @@ def test_a_tree_that_is_taken_up():
                 Growth(search, SETTINGS, text, [])
         else:
             growth = Growth(search, SETTINGS, text, [])
-            assert sum(len(part.cells) for part in growth.parts()) == pending
+            assert sum(len(part.cells) for part in growth.pieces()) == pending
             assert growth.view().finished == (pending == 0)
             assert growth.work(1, bool, 100 if pending < 30 else 1)
 

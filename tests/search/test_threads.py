@@ -78,13 +78,13 @@ def test_what_is_left_goes_on_in_another_search():
     search.work(0, bool)
     growth = Growth(search, LOEWNER.settings, one.text, [hint for _, _, hint in one.cells], True)
     growth.work(2, bool)
-    again, = growth.parts()
+    again, = growth.pieces()
     assert again.text == whole.text and again.steps == [OLD] * len(one.text) + rest.steps
     assert again.counts == growth.view().counts == rest.counts
 
 
 def text_of(growth):
-    return "".join(part.text + "?" * len(part.cells) for part in growth.parts())
+    return "".join(part.text + "?" * len(part.cells) for part in growth.pieces())
 
 
 def gaps(text, rng):
@@ -107,7 +107,7 @@ def test_gaps_are_filled(task):
             text = text_of(growth)
             growth = Growth(search, task.settings, text, [])
         growth.work(2, bool)
-        (part, *others), view = growth.parts(), growth.view()
+        (part, *others), view = growth.pieces(), growth.view()
         assert not others and not part.cells
         assert view.finished and (view.examined == 1.0 or part.text.endswith("U"))
         if task.settings.method == "thesis":    # its tries do not depend on hints
@@ -138,7 +138,7 @@ def test_linked_leaves_are_kept():
     search = Search(LOEWNER)
     search.work(0, bool)
     growth = Growth(search, LOEWNER.settings, "02a?b", [5])
-    assert text_of(growth) == "02a?b" and growth.parts()[0].cells[0][2] == 5
+    assert text_of(growth) == "02a?b" and growth.pieces()[0].cells[0][2] == 5
     with pytest.raises(WrongTree):
         Growth(search, LOEWNER.settings, "02a?A", [])
 
