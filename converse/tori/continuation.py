@@ -137,8 +137,8 @@ class Way:
 
     def of_orbit(self, orbits: Orbits, orbit: Orbit,
                  points: Optional[int] = None) -> Union[Found, float]:
-        """The torus at the end of the way on which an orbit lies; with `points` that on a mesh of
-        so many points.  Where there is none, the least error that Newton's method leaves; infinity:
+        """The torus at the end of the way on which an orbit lies.  Where there is none, or with
+        `points`, the least error that Newton's method leaves on meshes of so many points; infinity:
         it fails."""
         n, amplitude = self.potential.dimension, self.amplitude(1.0)
         k, c = orbits.series(orbit, self.rotation, REACH[n])
@@ -156,13 +156,14 @@ class Way:
             if solved is None or rounds == WEARY:
                 return inf
             u, before = solved[0], min(before, solved[1])
+            if before <= STALLED and points:
+                return 0.0
             if before <= STALLED:
-                found = self._measured(1.0, mesh, u)
-                for least in (ENOUGH, 0.0) * (points is None):
-                    found = self._solved(1.0, found, found.u, least)
-                    if not isinstance(found, Found):
-                        return before if found == TOO_LARGE else inf
-                return found
+                found = self._solved(1.0, self._measured(1.0, mesh, u), u)
+                if isinstance(found, Found):
+                    found = self._solved(1.0, found, found.u, 0.0)
+                return found if isinstance(found, Found) else (
+                    before if found == TOO_LARGE else inf)
             box *= GROWTH[n]
             larger = self.mesh(2 * box)
             u, mesh = mesh.moved(u, larger), larger

@@ -12,7 +12,7 @@ Tell = Callable[[str], None]
 
 # Seconds to look for regular orbits, and to follow one and plan its torus, by the number of angles;
 # to choose vectors near one orbit.
-LOOKING, PLANNING, CHOOSING = {1: 0.65, 2: 4.5}, {1: 0.25, 2: 1.5}, 0.7
+LOOKING, PLANNING, CHOOSING = {1: 0.65, 2: 4.5}, {1: 0.25, 2: 1.5}, 1.2
 # Seconds for each point of a grid: Newton's method in doubles, and an error with many digits.
 SOLVING, BALLS = 2e-6, 1.0e-5
 SHORT, LONGER = 128, 1.6    # Balls of more than SHORT bits take LONGER times as long.

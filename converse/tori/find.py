@@ -26,6 +26,7 @@ __all__ = ["NotFound", "find"]
 ENOUGH = 3                  # From so many tori the one is chosen that needs the fewest modes.
 SMALL = 1 << 15             # Points of the mesh on which the vectors of two angles are compared.
 NEAR = 6                    # Rotation vectors are looked for near so many orbits of two angles.
+SMOOTHEST = 6               # Of so many of them a torus is made.
 APART = 3e-4                # Of vectors that differ by less, in turns, the best is tried.
 ROUNDS = 3                  # This often the number of modes is chosen.
 # The lengths of pieces are chosen for DEGREE in sigma; they have LEAST_DEGREE to MOST_DEGREE.
@@ -223,11 +224,6 @@ class Search:
         assert failure is not None
         raise failure
 
-    def _roughness(self, orbits, orbit, s):
-        """The error of Newton's method, on a small mesh, for the torus of an orbit."""
-        found = self._at(orbit.vector, s).of_orbit(orbits, orbit, SMALL)
-        return 0.0 if isinstance(found, Found) else found
-
     def most_regular(self) -> Tuple[Way, Found]:
         """Of the tori of the most regular orbits the one that needs the fewest modes, at the end
         where V is larger."""
@@ -256,8 +252,10 @@ class Search:
         if n == 1:
             return seen, seen
         self.tell("looking for rotation vectors", CHOOSING * len(seen[:NEAR]))
-        return seen, apart(sorted(near_vectors(orbits, seen[:NEAR]), key=lambda orbit:
-                                  self._roughness(orbits, orbit, s)), APART)
+
+        def error(orbit):
+            return self._at(orbit.vector, s).of_orbit(orbits, orbit, SMALL)
+        return seen, apart(sorted(near_vectors(orbits, seen[:NEAR]), key=error), APART)[:SMOOTHEST]
 
     def _best(self, orbits: Orbits, listed: List[Orbit],
               s: Union[Fraction, int]) -> Tuple[Way, Found, Orbit]:

@@ -134,11 +134,16 @@ def test_vectors_of_two_angles_have_orbits():
 @pytest.mark.slow
 def test_of_the_vectors_of_two_angles_the_smoothest_are_tried(monkeypatch):
     """At epsilon = 0.011 changes of 1e-12 are rounding errors, and vectors in gaps have such."""
-    rough = []
-    measured = Search._roughness
-    monkeypatch.setattr(Search, "_roughness", lambda search, orbits, orbit, s: rough.append(
-        (measured(search, orbits, orbit, s), orbit.vector)) or rough[-1][0])
+    errors, of_orbit = [], Way.of_orbit
+
+    def recorded(way, orbits, orbit, points=None):
+        found = of_orbit(way, orbits, orbit, points)
+        if points:
+            errors.append((found, way.rotation))
+        return found
+
+    monkeypatch.setattr(Way, "of_orbit", recorded)
     search = Search(Problem.of(MuldoonMap(epsilon="0.011")), 1 << 20, None, Work())
     way, found = search.most_regular()
-    rank = [vector for _, vector in sorted(rough, key=lambda each: each[0])].index(way.rotation)
-    assert len(rough) > 20 and rank < len(rough) / 3
+    rank = [vector for _, vector in sorted(errors, key=lambda each: each[0])].index(way.rotation)
+    assert len(errors) > 20 and rank < len(errors) / 3
