@@ -53,7 +53,8 @@ QUICK_CASES = 3
 def pytest_collection_modifyitems(items):
     cases = {}
     for item in items:
-        cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
+        if not item.get_closest_marker("slow"):
+            cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
     for of_one in cases.values():
         last = len(of_one) - 1
         taken = {k * last // (QUICK_CASES - 1) for k in range(QUICK_CASES)}

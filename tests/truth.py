@@ -10,7 +10,6 @@ from fractions import Fraction
 import mpmath
 
 
-
 class Share(Fraction):
     """A part of the random cases: of ten a third is four."""
 

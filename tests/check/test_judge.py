@@ -5,9 +5,10 @@ import re
 import judge_of_tori as judge
 import pytest
 from files import sealed, with_line
-from truth import TORTURE
 
 from converse import check
+
+from truth import TORTURE
 
 CHEAP = "standard-0.9.torus"
 

@@ -152,6 +152,7 @@ def test_nothing_is_looked_for_where_v_is_0():
     assert none.exclude(family, family, [], 2000)[1:] == (None, ())
 
 
+@pytest.mark.slow
 def test_a_try_at_a_torus_ends_at_the_step_after_it_is_told_to():
     """Two angles may take minutes, and Ctrl-C waits for the try."""
     family, asked = FourierMap({1: "0.9"}), []

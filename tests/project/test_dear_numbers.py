@@ -54,6 +54,7 @@ def windows():
                                marks=() if at in ("0.207", "0.28", "0.42", "0.52") else dear)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("K1, rotation", list(windows()))
 def test_circles_that_come_back(K1, rotation):
     """Where the straight way from the map without potential is barred, by a bend; two come from

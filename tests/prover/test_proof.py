@@ -623,7 +623,8 @@ LINE, WEAK = (Problem(MuldoonMap(a, a, 2 * Fraction(a))) for a in ("0.3085", "0.
 
 
 @pytest.mark.parametrize("source, options, why", [
-    (StandardMap(k="0.9"), {}, "hopeless as seen"), (StandardMap(k=2), {}, ""),
+    pytest.param(StandardMap(k="0.9"), {}, "hopeless as seen", marks=pytest.mark.slow),
+    (StandardMap(k=2), {}, ""),
     (WEAK, {"depth": 6}, "limit of depth"), (LINE, {"time_limit": 0}, "time"),
     (LINE, {"method": "thesis", "depth": 3}, "limit of depth"),
     (MuldoonMap("1e19", 0, 0), {}, "limit of doubles")])

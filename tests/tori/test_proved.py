@@ -174,7 +174,7 @@ def test_what_is_not_a_torus_is_refused(circle, surface):
 
 @pytest.mark.parametrize("rho, words", [
     (Q(1), "more than|error of the torus|inverse|too large|too far"),
-    (Q(10), "too wide"), (Q(1, 10 ** 6), "error")])
+    (Q(10), "too wide"), pytest.param(Q(1, 10 ** 9), "error", marks=pytest.mark.slow)])
 def test_a_strip_that_does_not_suit_proves_nothing(circle, rho, words):
     with pytest.raises(NotProved, match=words):
         prove(changed(circle, strip=circle.strip._replace(rho=rho)))
@@ -224,7 +224,8 @@ RANGE_DAMAGES = {
 }
 
 
-@pytest.mark.parametrize("damage", RANGE_DAMAGES)
+@pytest.mark.parametrize("damage", [*list(RANGE_DAMAGES)[:-1], pytest.param(
+    "a power", marks=pytest.mark.slow)])
 def test_damaged_ranges_are_not_proved(damage, pieces):
     with pytest.raises(NotProved):
         prove([RANGE_DAMAGES[damage](torus) for torus in pieces])

@@ -92,6 +92,7 @@ def test_the_frame_follows_the_decay():
             frame, frame[::-1])
 
 
+@pytest.mark.slow
 def test_of_tori_on_equal_meshes_the_one_of_the_fewest_modes_is_taken(monkeypatch):
     made, of_orbit = [], Way.of_orbit
 

@@ -5,7 +5,7 @@ from fractions import Fraction
 from math import cos, floor, pi, sqrt
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from converse.check.field import evaluate, is_irreducible

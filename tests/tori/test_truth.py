@@ -29,7 +29,8 @@ CASES = {
 }
 
 
-@pytest.fixture(scope="module", params=CASES)
+@pytest.fixture(scope="module", params=[
+    "golden", "phase", "line", pytest.param("phases", marks=pytest.mark.slow)])
 def proved(request):
     return prove(*CASES[request.param])
 
