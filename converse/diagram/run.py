@@ -8,7 +8,7 @@ from typing import Callable, Optional
 from ..model.exact import Number, exact
 from ..model.map import SymplecticMap
 from ..prover.resume import check_release
-from ..prover.workers import Deadline, Filling, WorkerPool, check_options
+from ..prover.workers import Filling, WorkerPool
 from ..storage.backup import Backup
 from ..storage.files import ConverseError, Path
 from ..storage.signals import interruptible
@@ -62,8 +62,7 @@ def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = No
     ConverseError, MemoryError
         The run ended; what was proved is in the file.
     """
-    check_options(jobs, executor)
-    deadline = Deadline(time_limit, cpu_limit)
+    pool = WorkerPool(executor, jobs, time_limit, cpu_limit)
     seconds = exact(budget)
     if seconds <= 0:
         raise ValueError("the budget is a number of seconds above 0, not %s" % (budget,))
@@ -78,7 +77,7 @@ def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = No
             raise TypeError("there must be a family, or the file of a diagram to continue")
         if len(diagram.ranges) == 1 and not diagram.members:
             diagram.sides = sides_of(diagram.family)
-        with Filling(diagram, backup, WorkerPool(executor, jobs), deadline,
+        with Filling(diagram, backup, pool,
                      lambda: progress and progress(diagram)) as filling:
             search = line.search if len(diagram.ranges) == 1 else cells.search
             search(diagram, filling, int(seconds * POINTS_A_SECOND), tell or (lambda text: None))

@@ -30,7 +30,7 @@ from .proof import Tree
 from .proof_file import map_of, part_lines, tree_of, wave_lines
 from .resume import check_release
 from .settings import Settings
-from .workers import Deadline, Filling, WorkerPool, check_options
+from .workers import Filling, WorkerPool
 
 FIRST_LINE = "converse portrait 2"
 DIGITS = 12                             # decimals of x* and of the width of strips
@@ -334,8 +334,7 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
     ConverseError
         The file cannot be used; what was found is in it.
     """
-    check_options(jobs, executor)
-    deadline = Deadline(time_limit, cpu_limit)
+    pool = WorkerPool(executor, jobs, time_limit, cpu_limit)
     asked = None if source is None else Portrait.new(Problem.of(source), columns, depth, strips)
     with interruptible(), Backup(path, resumed=path if resume else None) as backup:
         if path is not None and resume and asked is None:
@@ -357,8 +356,7 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
 
         tasks = ((x, column, portrait.patch, portrait.strip, portrait.depth, x)
                  for x in portrait.stars if x not in portrait.found)
-        with Filling(portrait, backup, WorkerPool(executor, jobs), deadline,
-                     look) as filling:
+        with Filling(portrait, backup, pool, look) as filling:
             filling.work(lambda: next(tasks, None), take)
     return portrait
 

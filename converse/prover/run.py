@@ -1,7 +1,6 @@
 """prove(): one run of the search for a proof, from what is known before it to a Proof."""
 
 import concurrent.futures
-import contextlib
 import math
 import os
 import time
@@ -26,7 +25,7 @@ from .resume import continued, counted
 from .settings import LENGTH, MAY_CHANGE, SETTINGS, Settings
 from .shared import OLD, Growth, Shared
 from .starts import MAX_PROOF_LEAVES, has_width, plan
-from .workers import Deadline, WorkerPool, check_options, count_workers
+from .workers import WorkerPool, count_workers
 
 LONG = 400                              # points: of a proved prism's orbit
 # Decided prisms, after which it is asked whether thin prisms resist: with waves of one combination
@@ -104,8 +103,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
         raise TypeError("prove() has no argument %s; the settings are %s"
                         % (min(unknown), ", ".join(SETTINGS)))
     given = {name: value for name, value in settings.items() if value is not None}
-    check_options(jobs, executor)
-    deadline = Deadline(time_limit, cpu_limit)
+    pool = WorkerPool(executor, jobs, time_limit, cpu_limit)
     file = None if resume is None or isinstance(resume, Proof) else resume
     name = "the proof to resume" if file is None else os.fspath(file)
     if resume is not None:
@@ -126,7 +124,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
         if on_begin is not None:
             on_begin(before)
         try:
-            return _Run(before, backup_file, jobs, executor, deadline, progress, on_leaf).run()
+            return _Run(before, backup_file, pool, progress, on_leaf).run()
         except native.WrongTree as error:
             raise ConverseError("%s: %s; use an intact copy or start anew"
                                 % (name, error)) from None
@@ -161,13 +159,11 @@ class _Run:
     The trees are grown one after the other.  Where a tree leaves prisms undecided, further ones are
     added to the list."""
 
-    def __init__(self, before, backup, jobs, executor, deadline, progress, on_leaf):
+    def __init__(self, before, backup, pool, progress, on_leaf):
         self.proof, self.backup = replace(before, hopeless=False), backup
-        self.threads = jobs if jobs and executor is None else count_workers()
-        self.pool = None if executor is None else WorkerPool(executor, jobs)
+        self.pool, self.threads = pool, pool.here and pool.jobs or count_workers()
         self.progress, self.on_leaf = progress, on_leaf
         self.began, self.seconds_before = time.monotonic(), before.seconds
-        self.deadline = deadline
         self.examined = self.share = 0.0    # before the tree that is grown now; of all, told last
         self.number, self.search = 0, None      # of that tree, and its search
         self.counts = before.counts             # when that began
@@ -178,7 +174,7 @@ class _Run:
 
     def run(self):
         try:
-            with self.pool or contextlib.nullcontext():
+            with self.pool:
                 while self.number < len(self.proof.trees) and self._grow():
                     linked = (not self._tree.decided or self._is_hard()) and self._link()
                     if not linked and self._tree.decided:
@@ -228,7 +224,7 @@ class _Run:
         setting_up, left = time.monotonic() - began, MANY_LEAVES - counts.decided
         if self.may_be_long and left > 0 and not self._look():  # what is asked then is asked there,
             self.search.work(self.threads, self._look, left)    # whenever this looks
-        if self.pool:
+        if not self.pool.here:
             self._hand_over(replace(task, xstar=search.xstar), setting_up)
         if not self._look():
             self.search.work(self.threads, self._look)
@@ -355,12 +351,11 @@ class _Run:
     # ---- what is told
 
     def _seconds_left(self):
-        return self.deadline.left()
+        return self.pool.seconds_left()
 
     def _is_late_told(self):
         """This is asked again and again while no tree grows."""
-        if self.pool:
-            self.pool.check()
+        self.pool.check()
         self._show(self.share, self.proof.counts)
         return self._is_late()
 

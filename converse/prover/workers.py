@@ -6,6 +6,7 @@ task is a column, a cell of a map, or a list of prisms that are to be decided.""
 
 import concurrent.futures
 import contextlib
+import math
 import os
 import pickle
 import platform
@@ -36,39 +37,25 @@ def count_workers(executor=None):
         return os.cpu_count() or 1
 
 
-class Deadline:
-    """The end of a run, of which this is the beginning: after time_limit seconds on the clock, or
-    cpu_limit seconds of this process's processors, whichever comes first.  ValueError: a limit is
-    not a number of seconds."""
+class WorkerPool(Resource):
+    """The workers of an executor or, where that is None, threads of this process, for a run that
+    begins now.
 
-    def __init__(self, time_limit, cpu_limit):
+    executor: a concurrent.futures.Executor or None; jobs: tasks at a time, or None: as many as keep
+    the workers busy, which with a Dask cluster may come and go; time_limit, cpu_limit: seconds on
+    the clock, and of this process's processors.  TypeError, ValueError: one of these is wrong.
+    The tasks of threads of this process have as their last argument a function that tells whether
+    to stop; other processes cannot be told."""
+
+    def __init__(self, executor=None, jobs=None, time_limit=math.inf, cpu_limit=math.inf):
+        if jobs is not None:
+            whole_number(jobs, "jobs", 1)
+        if executor is not None and not hasattr(executor, "submit"):
+            raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
         for name, limit in ("time_limit", time_limit), ("cpu_limit", cpu_limit):
             if isinstance(limit, bool) or not isinstance(limit, (int, float)) or not limit >= 0:
                 raise ValueError("%s is a number of seconds, not %r" % (name, limit))
         self.end, self.cpu_end = time.monotonic() + time_limit, time.process_time() + cpu_limit
-
-    def left(self):
-        """How many seconds are left; 0 or less: none."""
-        return min(self.end - time.monotonic(), self.cpu_end - time.process_time())
-
-
-def check_options(jobs, executor):
-    """TypeError, ValueError: one of these arguments of prove(), portray() or explore() is wrong."""
-    if jobs is not None:
-        whole_number(jobs, "jobs", 1)
-    if executor is not None and not hasattr(executor, "submit"):
-        raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
-
-
-class WorkerPool(Resource):
-    """The workers of an executor or, where that is None, threads of this process.
-
-    executor: a concurrent.futures.Executor or None; jobs: tasks at a time, or None: as many as keep
-    the workers busy, which with a Dask cluster may come and go.
-    The tasks of threads of this process have as their last argument a function that tells whether
-    to stop; other processes cannot be told."""
-
-    def __init__(self, executor=None, jobs=None):
         self.jobs, self.here = jobs, executor is None
         self.executor = executor or concurrent.futures.ThreadPoolExecutor(jobs or count_workers())
         self.client = getattr(executor, "_client", None)        # of Dask
@@ -91,6 +78,10 @@ class WorkerPool(Resource):
             for future in self.running if self.alive else ():
                 future.cancel()
         self.running.clear()
+
+    def seconds_left(self):
+        """Until the limit that comes first; 0 or less: none."""
+        return min(self.end - time.monotonic(), self.cpu_end - time.process_time())
 
     # ---- tasks
 
@@ -214,14 +205,14 @@ class Filling(Resource):
     result: with seconds, sha256 and save(); backup: of it; pool: a WorkerPool; look() is called a
     few times a second."""
 
-    def __init__(self, result, backup, pool, deadline, look):
+    def __init__(self, result, backup, pool, look):
         self.result, self.backup, self.pool, self.look = result, backup, pool, look
-        self.began, self.deadline = time.monotonic() - result.seconds, deadline
+        self.began = time.monotonic() - result.seconds
 
     @property
     def late(self):
         """Is the time up?"""
-        return self.deadline.left() <= 0
+        return self.pool.seconds_left() <= 0
 
     def acquire(self):
         self.pool.acquire()
