@@ -112,7 +112,7 @@ INLINE mask sym_is_above(int n, const vec d[], vec l)
     vec e[MOST_ENTRIES], a[MOST_ENTRIES];
 
     sym_less(n, e, d, l);
-    mask above = TRUTH(e[0] > 0.0) & TRUTH(sym_adjugate(n, a, e) > 0.0);
+    mask above = TRUTH(d[0] > l) & TRUTH(sym_adjugate(n, a, e) > 0.0);
     if (n == 3)
         above &= TRUTH(a[5] > 0.0);
     return above;

@@ -94,8 +94,9 @@ INLINE double score_of(const orbits *o, int n, int points, vec beta[SIDES][FAR_R
 
 /* The score of the orbit with this offset; if it does not exceed floor, any number that does
    not. */
-INLINE double score_of_angles(const orbits *o, int n, const double offset[], double floor)
+static double score_at(const orbits *o, const double offset[ANGLES], double floor)
 {
+    const int n = o->v->angles;
     vec x[SIDES][ANGLES], before[SIDES][ANGLES], force[ANGLES];
     vec beta[SIDES][FAR_REACH][MOST_ENTRIES];
     double found = 0.0;
@@ -120,15 +121,6 @@ INLINE double score_of_angles(const orbits *o, int n, const double offset[], dou
             break;
     }
     return found;
-}
-
-static double score_at(const orbits *o, const double offset[ANGLES], double floor)
-{
-    switch (o->v->angles) {
-    case 1: return score_of_angles(o, 1, offset, floor);
-    case 2: return score_of_angles(o, 2, offset, floor);
-    default: return score_of_angles(o, 3, offset, floor);
-    }
 }
 
 static double less_score(void *context, const double offset[ANGLES], double enough)

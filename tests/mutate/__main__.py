@@ -56,7 +56,7 @@ TESTS = {
     "arith/apm": NUMBERS, "arith/special": ["test_special.py", *NUMBERS],
     "arith/sine": ["test_loewner.py", "test_gappa.py", "test_waves.py"], "arith/lanes": SHARP,
     "arith/sum2": ["test_turns.py", *SHARP], "arith/turns": ["test_turns.py", *SHARP],
-    "arith/sym2": ["test_bounds.py", *SHARP],
+    "arith/sym": ["test_bounds.py", *SHARP],
     "arith/interval": ["test_interval.py", "test_bounds.py"],
     "arith/guard": ["test_rigor.py", "test_search.py", "test_orbits.py"],
     "arith/machine": ["test_rigor.py"],
