@@ -235,7 +235,8 @@ def test_what_is_odd_of_the_inputs(root):
     """Only then larger parameters may be excluded at once."""
     odd = {path.stem for path in (root / "inputs").glob("*.json")
            if read_input(path).odd is not None}
-    assert odd == {"standard", "crossed", "line", "plane-ab", "plane-b0", "third-harmonic"}
+    assert odd == {"standard", "crossed", "line", "plane-ab", "plane-b0", "third-harmonic",
+                   "line-three", "froeschle-three"}
 
 
 @pytest.mark.parametrize("name",
