@@ -17,7 +17,9 @@ DECIMAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
 NUMBER = re.compile(DECIMAL, re.ASCII)
 RATIO = re.compile("[+-]?[0-9]+/0*[1-9][0-9]*|" + DECIMAL, re.ASCII)
 THESIS = (1, 0), (0, 1), (1, 1)         # k of the three waves of the thesis
-IDENTITY, DIAGONALS = (1, 0, 0, 1), (1, 1, 1, -1)        # frames
+IDENTITY = 1, 0, 0, 1                   # frames
+# v0 is the mean of the coordinates, and n v1, n v2 are the differences of neighbours.
+DIAGONALS = {2: (1, 1, 1, -1), 3: (1, 2, 1, 1, -1, 1, 1, -1, -2)}
 # A parameter's name; not one of these, which mean something else in a theorem.
 NAME = re.compile(r"[^\W\d]\w{0,30}(\[[0-9]{1,9}\])?")
 RESERVED = {"y", "y0", "y1", "y2", "J", "J0", "J1", "J2", "V", "P", "S", "pi", "sin", "cos"}

@@ -5,7 +5,8 @@ import math
 from fractions import Fraction
 
 from .arith import SINE_ERROR, determinant, dot, fixed_of, inverse_rows
-from .tree import folds
+from .claim import DIAGONALS
+from .tree import exchange_orders
 
 CENTRE_BITS = 256                       # of the centre of the reversal
 
@@ -53,7 +54,11 @@ def symmetries_used(claim):
     used = []
     ends = [(c - h, c + h, P) for c, h, P in zip(claim.centre, claim.half, periods(claim.rows))]
     if any(high - low < P for low, high, P in ends[1:]):
-        if ends[1][1] < 1 or not folds(claim):
+        n = len(ends)
+        if claim.frame != DIAGONALS[n] or any(
+                low > 0 or n * high < 2 for low, high, _ in ends[1:]) or not all(
+                exchange_orders(claim, at) for at in range(n - 1)) or any(
+                any(shift[1:]) for shift in claim.shifts):
             return None
         used = ["exchange of the angles"]
     low, high, P = ends[0]

@@ -110,12 +110,15 @@ def check_tree(claim):
         part.counts.update(counts)
 
 
-def coefficients(waves, swap=False, order=None):
+def coefficients(waves, at=None, order=None):
     """V as the coefficients of sin(k.y + pi phase), k0 > 0 or k0 = 0 < k1, 0 <= phase < 1, in the
-    middle and of each parameter; the coordinates exchanged, the parameters in another order."""
+    middle and of each parameter; the coordinates at and at + 1 exchanged, the parameters in another
+    order."""
     found = {}
     for wave in waves:
-        k, phase = wave.k[::-1] if swap else wave.k, wave.phase
+        k, phase = wave.k, wave.phase
+        if at is not None:
+            k = k[:at] + (k[at + 1], k[at]) + k[at + 2:]
         if k < (0,) * len(k):                   # sin(x) = sin(pi - x)
             k, phase = tuple([-x for x in k]), 1 - phase
         sign = -1 if phase // 1 % 2 else 1      # sin(x + pi) = -sin(x)
@@ -126,21 +129,21 @@ def coefficients(waves, swap=False, order=None):
     return {key: value for key, value in found.items() if any(value)}
 
 
-def exchange_orders(claim):
-    """The orders of the parameters in which the potential with its coordinates exchanged, t'[m] =
-    t[order[m]], is the potential, and the shifts are the same; none, if x* is not its own image or
-    a coordinate is alone, or there are three."""
-    if len(claim.xstar) != 2 or claim.xstar[0] != claim.xstar[1] or claim.alone is not None:
+def exchange_orders(claim, at=0):
+    """The orders of the parameters in which the potential with its coordinates at and at + 1
+    exchanged, t'[m] = t[order[m]], is the potential, and the shifts are the same; none, if the
+    components of x* are not equal or a coordinate is alone."""
+    if len(set(claim.xstar)) > 1 or claim.alone is not None:
         return []
     # V(sigma y; t) = V(y; t'):  the part of t[order[m]] is, exchanged, that of t'[m].
     return [order for order in itertools.permutations(range(claim.parameters))
-            if coefficients(claim.waves, True, order) == coefficients(claim.waves)
+            if coefficients(claim.waves, at, order) == coefficients(claim.waves)
             and all(s == claim.shifts[m] for s, m in zip(claim.shifts, order))]
 
 
 def folds(claim):
     """Is the region proved with its mirror image, in which v1 has the other sign: step (C28)?"""
-    return (claim.frame == DIAGONALS and abs(claim.centre[1]) <= claim.half[1]
+    return (claim.frame == DIAGONALS[2] and abs(claim.centre[1]) <= claim.half[1]
             and not any(s1 for _, s1 in claim.shifts) and exchange_orders(claim) != [])
 
 

@@ -226,6 +226,30 @@ def test_the_bound_over_three_angles():
         assert B is None or abs(bound / fixed.one - B) < 1e-6
 
 
+SORTED = "1 2 1 1 -1 1 1 -1 -2"
+MOVING = ["1 0 0 0 0.2 0.1 0 0", "0 1 0 0 0.2 0 0.1 0", "0 0 1 0 0.2 0 0 0.1", "1 1 1 0 0.4 0 0 0"]
+
+
+@pytest.mark.parametrize("waves, changes, enough", [
+    (line("0.018"), {}, True), (MOVING, {}, True),      # the parameters are exchanged, too
+    (line("0.018"), {1: (0, "0.6666666")}, False), (line("0.018"), {2: ("1e-9", "0.7")}, False),
+    (line("0.018"), {2: ("-0.1", 1)}, True), (line("0.018"), {2: (-1, 0)}, False),
+    (line("0.018"), {"xstar": "0.575 0.575 0.576"}, False),
+    (line("0.018"), {"xstar": "0.5 0.575 0.575"}, False),
+    (line("0.018"), {"frame": "1 2 1 1 -1 1 1 -1 -1"}, False),
+    ([*line("0.018"), "1 1 0 0 0.1"], {}, False), ([*line("0.018"), "0 1 1 0 0.1"], {}, False),
+    ([*line("0.018"), "1 -1 0 1/2 0.1", "0 1 -1 1/2 0.1"], {}, False),          # a chain
+    ([*line("0.018"), "1 -1 0 1/2 0.1", "0 1 -1 1/2 0.1", "1 0 -1 1/2 0.1"], {}, True),
+    ([*MOVING[:2], "0 0 1 0 0.2 0 0.1 0", MOVING[3]], {}, False)])
+def test_sorted_angles_stand_for_the_torus(waves, changes, enough):
+    xstar, frame = changes.get("xstar", XSTAR), changes.get("frame", SORTED)
+    ends = [(Fraction(0), Fraction(2)), *[(Fraction(0), Fraction("0.6666666667"))] * 2]
+    for i in {1, 2} & changes.keys():
+        ends[i] = tuple(map(Fraction, changes[i]))
+    found = check.symmetries_used(claim_of(file_of("P", waves, ends, xstar, frame)))
+    assert found == (["exchange of the angles"] if enough else None)
+
+
 # ---- matrices of one to three rows
 
 @pytest.mark.parametrize("n", (1, 2, 3))
