@@ -28,7 +28,7 @@ from .value import POINTS_A_SECOND, Diagram, Seen
 # down to 1/PARTS of what is open, and where a torus is seen at one end only down to 1/FINEST.
 GRID, PARTS, FINEST = {1: 16, 2: 8}, {1: 1 << 8, 2: 1 << 5}, {1: 1 << 15, 2: 1 << 9}
 SEEN = 1e-9                             # turns: an orbit that changes less is taken for a torus
-EFFORTS = {1: (4, 16, 64), 2: (64, 256)}        # seconds that a try may take, about
+EFFORTS = {1: (4, 16, 64), 2: (128, 512)}       # seconds that a try may take, about
 LEAST = {1: 2, 2: 20}                   # No try begins with less.
 POINT = 1e-4                            # seconds of a proof for each point of its mesh, at least
 BORDERS, LOOKS, PROOFS = 2, 2, 1        # of a round

@@ -26,7 +26,7 @@ __all__ = ["NotFound", "find"]
 ENOUGH = 3                  # From so many tori the one is chosen that needs the fewest modes.
 SMALL = 1 << 15             # Points of the mesh on which the vectors of two angles are compared.
 NEAR = 6                    # Rotation vectors are looked for near so many orbits of two angles.
-SMOOTHEST = 6               # Of so many of them a torus is made.
+SMOOTHEST = 4               # Of so many of them a torus is made.
 APART = 3e-4                # Of vectors that differ by less, in turns, the best is tried.
 ROUNDS = 3                  # This often the number of modes is chosen.
 # The lengths of pieces are chosen for DEGREE in sigma; they have LEAST_DEGREE to MOST_DEGREE.
