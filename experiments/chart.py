@@ -26,7 +26,7 @@ import sides
 import converse
 from converse.commands.common import Parser, ended
 from converse.draw import plot
-from converse.model.map import LINE, MuldoonMap
+from converse.model.map import LINE, FourierMap, MuldoonMap
 from converse.model.problem import Problem
 from converse.storage import files
 from converse.storage.files import ConverseError
@@ -57,7 +57,7 @@ WALLS = {
                 "0.01389"),
 }
 # --quick stops there.
-QUICK = {"bound": 0.0160, "torus": 0.004, "thesis": 0.02704, "loewner": 0.0147}
+QUICK = {"angles": 0.0160, "bound": 0.0160, "torus": 0.004, "thesis": 0.02704, "loewner": 0.0147}
 WALL_SECONDS = 40.0
 
 # A prism of the size that proofs near the wall cut to, on an orbit of trig274: the centre and the
@@ -67,6 +67,15 @@ XSTAR = ("0.827732913851",) * 2
 SUCCESSOR = ("4.9578", "0.0982"), ("0.003", "0.006")
 POINTS = (2, 3, 4)                      # of the orbit, x* being number 0
 SAMPLES = 2000
+
+# The line of maps of two angles and of three: single values, from the one at which one point of the
+# torus is enough.
+LINES = {
+    2: ("0.0270", "0.0200", "0.0180", "0.0165", "0.0155", "0.0150", "0.0147", "0.0145", "0.0143",
+        "0.0142", "0.0141", "0.0140", "0.0139"),
+    3: ("0.0183", "0.0180", "0.0175", "0.0170", "0.0160", "0.0150", "0.0145", "0.0140", "0.0137",
+        "0.0135", "0.0134", "0.0133"),
+}
 
 METHODS = {"thesis": ("the thesis's method", plot.DARK),
            "loewner": ("the sharper method", plot.BLUE)}
@@ -104,7 +113,7 @@ def bound(quick):
         yield "1989", epsilon, seconds, "1989"
     for epsilon, centre in BOXES:
         yield _bound_row("thesis", epsilon, _problem(*(
-            Fraction(centre) + sign * Fraction("0.00125") for sign in (-1, 1))))
+            Fraction(centre) + sign * Fraction("0.00125") for sign in (-1, 1))), method="thesis")
     for epsilon in BOUNDS:
         if not quick or float(epsilon) >= QUICK["bound"]:
             yield _bound_row("no torus", epsilon, on_line(epsilon, TOP, together=True),
@@ -304,7 +313,41 @@ def draw_wall(figure, rows):
         if _pick(rows, 4, "no") else "")
 
 
+def angles(quick):
+    for epsilon, centre in BOXES:
+        proof, seconds = timed(_problem(*(Fraction(centre) + sign * Fraction("0.00125")
+                                          for sign in (-1, 1))), method="thesis")
+        assert proof.no_tori, epsilon
+        yield "1989", epsilon, proof.counts.proved, seconds, converse.__version__
+    for n, values in LINES.items():
+        units = [tuple(int(i == j) for i in range(n)) for j in range(n)]
+        for epsilon in values:
+            if quick and float(epsilon) < QUICK["angles"]:
+                continue
+            a = LINE * Fraction(epsilon)
+            proof, seconds = timed(Problem(FourierMap({**dict.fromkeys(units, a),
+                                                       (1,) * n: 2 * a})), method="loewner")
+            assert proof.no_tori, epsilon
+            yield "%d angles" % n, epsilon, proof.counts.proved, seconds, converse.__version__
+
+
+def draw_angles(figure, rows):
+    axes = figure.subplots()
+    for what, marker, colour, words, at in (
+            ("1989", "v", plot.DARK, "four dimensions,\nthe method of 1989", (0.0240, 300)),
+            ("2 angles", "o", plot.BLUE, "four dimensions,\ntoday", (0.0143, 25000)),
+            ("3 angles", "D", plot.VERMILLION, "six dimensions,\ntoday", (0.0130, 40))):
+        some = _pick(rows, 0, what)
+        epsilon, prisms = zip(*[(float(row[1]), row[2]) for row in some])
+        axes.plot(epsilon, prisms, marker + "-", color=colour)
+        axes.text(*at, "%s:\nevery ε ≥ %s" % (words, some[-1][1]), color=colour, va="center")
+    axes.set(yscale="log", ylabel="prisms proved", xlabel="\u03b5 (a = c/2 = 11.21436 \u03b5)",
+             title="No torus, for the line of maps of two angles and of three")
+    return "single values, but boxes of 1989"
+
+
 CHARTS = {
+    "angles": (("what", "epsilon", "prisms", "seconds", "release"), angles, draw_angles),
     "bound": (("what", "epsilon", "seconds", "release"), bound, draw_bound),
     "width": (("form", "digits", "point", "nanoseconds", "ratio"), width, draw_width),
     "wall": (("method", "epsilon", "prisms", "deepest_cut", "proved"), wall, draw_wall),
@@ -366,7 +409,7 @@ def _number(column, word):
 
 def parser():
     p = Parser(prog="chart.py", allow_abbrev=False, description=(
-        "Measures on this machine and draws three charts: bound, width, wall."), epilog=(
+        "Measures on this machine and draws four charts: angles, bound, width, wall."), epilog=(
         "Exit status: 0 all are written; 2 bad usage or directory; 130 interrupted."))
     p.add_argument("directory", nargs="?", default=os.curdir,
                    help="where to write chart-NAME.svg and chart-NAME.csv (default: here)")

@@ -140,6 +140,9 @@ class Diagram(Kept):
         ValueError
             It has fewer or more, or they do not move the amplitudes independently.
         """
+        if family.dimension > 2:
+            raise ValueError("a diagram is of one angle or two; of three, prove a range with "
+                             "converse")
         waves, names, ranges = [], [], []
         for name, (low, high) in zip(family.names or ["t%d" % m for m in range(
                 1, 1 + len(family.slopes))], family.ranges):

@@ -107,7 +107,7 @@ def two_at_most(dimension: int) -> None:
     """ValueError: tori or orbits are to be found of a map of three angles."""
     if dimension > 2:
         raise ValueError("tori and orbits are looked for in one angle or two; this map has three, "
-                         "of which converse and converse-map prove that there is no torus")
+                         "of which converse proves that there is no torus")
 
 
 def angle_names(letter: str, dimension: int) -> Tuple[str, ...]:

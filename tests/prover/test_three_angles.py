@@ -3,12 +3,14 @@
 import pytest
 
 from converse import FourierMap, Problem, Proof, Settings, Tree, read_input
-from converse.commands import orbits, prove, tori
+from converse import prove as converse_prove
+from converse.commands import map, orbits, prove, tori
 from converse.draw import captions
 from converse.model.region import reduced
 from converse.prover.tree import cells
 
 STAR = "0.575", "0.575", "0.575"
+UNITS = (1, 0, 0, "+cos"), (0, 1, 0, "+cos"), (0, 0, 1, "+cos")
 
 
 @pytest.fixture
@@ -40,7 +42,8 @@ def test_the_report_names_three_angles(problem):
 def test_the_file_names_three_angles(problem):
     lines = proof_of(problem, "05PPP")._text().split("\n")
     assert lines[lines.index("method: loewner") + 1] == "angles: 3"
-    assert "wave: 1 1 1 0 0.354373776 0.0560718" in lines and "v2: 0.3333333335 0.3333333335" in lines
+    assert "wave: 1 1 1 0 0.354373776 0.0560718" in lines
+    assert "v2: 0.3333333335 0.3333333335" in lines
     assert "xstar: 0.575 0.575 0.575" in lines and "odd about: 0 0 0" in lines
     assert len(next(line for line in lines if line.startswith("frame: ")).split()) == 1 + 9
     two = Proof((Tree(Problem(FourierMap({(1, 0): "0.3", (0, 1): "0.3"})), STAR[:2], "P"),))
@@ -69,9 +72,39 @@ def test_a_figure_is_seen_along_the_third_angle(problem):
 @pytest.mark.parametrize("command, arguments, words", [
     (tori, [], "tori and orbits are looked for in one angle or two; this map has three"),
     (orbits, ["1,1/2", "1", "--at", "epsilon=0.01"], "this map has three, of which converse"),
+    (map, [], "a diagram is of one angle or two; of three, prove a range with converse"),
     (prove, ["--x2", "1"], "--x2 is the third angle of x*; give the others by --xstar X0 X1"),
     (prove, ["--xstar", "1", "1"], "xstar is three numbers, in radians, not")])
 def test_what_is_not_for_three_angles_is_refused_in_a_line(capsys, path, command, arguments, words):
     assert command.main([str(path), *arguments]) == 2
     out, err = capsys.readouterr()
     assert words in err and err.count("\n") == 1 and not out
+
+
+# ---- searches
+
+def rotors(K, *waves):
+    """Three rotors of strength K, and further waves."""
+    return FourierMap({**dict.fromkeys(UNITS, K), **dict(waves)})
+
+
+@pytest.mark.parametrize("map_, most", [
+    (rotors("0.9", ((1, 1, 1, "+cos"), "0.1")), 600),       # exchange of all angles
+    (rotors("1.1", ((1, -1, 0, "+cos"), "0.1"), ((0, 1, -1, "+cos"), "0.1")), 600),
+    (FourierMap({(1, 1, 1): "0.36"}), 300),     # in y0 + y1 + y2 alone
+])
+def test_theorems_are_proved_and_verified(map_, most, tmp_path):
+    found = converse_prove(map_)
+    assert found.no_tori and 0 < found.counts.proved < most and len(found.xstar) == 3
+    found.save(tmp_path / "a.proof")
+    again = Proof.load(tmp_path / "a.proof")
+    assert again == found and again.problem.map == map_ and again.verify().verdict == "verified"
+
+
+@pytest.mark.parametrize("map_", [
+    FourierMap({**dict.fromkeys(((1, 0, 0), (0, 1, 0), (0, 0, 1)), "0.022"), (1, 1, 1): "0.045"}),
+    rotors("0.9"),                      # each of the three standard maps has circles
+    FourierMap({(1, 1, 1): "0.3"})])    # so has the standard map of 0.9
+def test_maps_with_tori_stay_undecided(map_):
+    found = converse_prove(map_, depth=11, stubborn=True, cpu_limit=20)
+    assert not found.no_tori and found.counts.undecided
