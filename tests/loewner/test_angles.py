@@ -17,7 +17,7 @@ from converse.prover.native import Search, Task, grow
 import kernels
 from truth import TORTURE, mp, rng_for
 
-CASES = 80 * TORTURE
+CASES = 300 * TORTURE
 SITES = 60
 FRAMES = {1: [(1,), (-2,)],
           3: [(1, 0, 0, 0, 1, 0, 0, 0, 1), (1, 1, 0, 1, -1, 1, 1, 0, -1),
