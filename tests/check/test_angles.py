@@ -344,3 +344,41 @@ def test_a_map_along_a_diagonal(run):
             with pytest.MonkeyPatch.context() as patch:
                 patch.setattr(check, "MAX_PIECES", 64)
                 assert criterion.excluded(check.ROOT)[0]
+
+
+# ---- three angles that may be exchanged
+
+
+def test_sorted_angles_are_enough(run):
+    """By exchange and reversal a third of the region; none where V or x* tells the angles apart, or
+    the region is short."""
+    third = Fraction(666668, PLACES)
+    waves = line("0.018")
+    ends = [half(waves, SORTED)[0], (Fraction(0), third), (Fraction(0), third)]
+    tree = found_tree(claim_of(file_of("P", waves, ends, frame=SORTED)), 2000)
+    status, out, _ = run(file_of(tree, waves, ends, frame=SORTED))
+    assert status == 0 and "by reversal of time and exchange of the angles" in out
+    uneven = [waves[0], waves[1], "0 0 1 0 0.2018", waves[3]]
+    for axis, change in ((1, (0, -2)), (2, (0, -2)), (1, (1, 0)), (2, (1, 0))):
+        short = list(ends)
+        short[axis] = tuple(x + Fraction(y, PLACES) for x, y in zip(ends[axis], change))
+        assert check.symmetries_used(claim_of(file_of("P", waves, short, frame=SORTED))) is None
+    for more in ({"waves": uneven}, {"xstar": "0.575 0.575 0.576"}, {"xstar": "0.574 0.575 0.575"},
+                 {"frame": DIAGONAL}):
+        known = {"waves": waves, "frame": SORTED, **more}
+        wide = [(ends[0][0] - 1, ends[0][1] + 1), *ends[1:]]
+        assert check.symmetries_used(claim_of(file_of("P", ends=wide, **known))) is None
+        assert (check.symmetries_used(claim_of(file_of("P", waves, wide, frame=SORTED)))
+                == ["exchange of the angles"])
+
+
+def test_each_point_has_an_image_that_is_sorted():
+    """By shifts of the sum 0 and permutations each point comes to where v1 and v2 are in [0, 2/3],
+    with the same v0."""
+    draw, F = np.random.default_rng(1), np.array([[1, 2, 1], [1, -1, 1], [1, -1, -2]])
+    shifts = [2 * np.array(m) for m in itertools.product(range(-4, 5), repeat=3) if not sum(m)]
+    for x in draw.uniform(-2, 2, (60, 3)):
+        images = np.array([list(image) for m in shifts for image in itertools.permutations(x + m)])
+        v = np.linalg.solve(F, images.T)
+        assert np.allclose(v[0], x.sum() / 3)
+        assert ((v[1:] >= -1e-12) & (v[1:] <= 2 / 3 + 1e-12)).all(axis=0).any()

@@ -35,7 +35,7 @@ PATIENCE = 900                          # seconds, for the tests of one file
 # The files that are mutated: all of csrc, and these files of the folders of converse.  The files
 # that guess where to start are left out, because no proof rests on them.
 PYTHON = {"orbits": ("enclosure", "exponents"),
-          "check": ("claim", "container", "cover", "criterion", "exact", "field", "links",
+          "check": ("arith", "claim", "container", "cover", "criterion", "exact", "field", "links",
                     "lockstep", "diagram", "portrait", "proof_file", "series", "tori", "torus",
                     "torus_file", "tree"),
           "tori": ("certificate", "field", "proved")}
@@ -73,9 +73,12 @@ TESTS = {
     "check/field": ["test_tori_bounds.py", "test_tori.py"],
     "check/series": ["test_tori_bounds.py", "test_tori.py"],
     "check/tori": ["test_tori_bounds.py", "test_tori.py"], "check/torus_file": ["test_tori.py"],
+    "check/arith": ["check/test_angles.py: matrices or frames_of", "test_check.py: sincos or taylor "
+                    "or roots", "check/test_exact.py", "check/test_angles.py"],
     "check/claim": ["test_check.py: numbers or cells or prisms_cover or boxes_cover or header",
-                    *PARTS, BOTH_PATHS],
-    "check/cover": ["test_parts.py: enough or centre or periods or reversal", "test_portrait.py"],
+                    *PARTS, "check/test_angles.py: one_angle or wrong", BOTH_PATHS],
+    "check/cover": ["test_parts.py: enough or centre or periods or reversal",
+                    "check/test_angles.py: periods or too_short", "test_portrait.py"],
     "check/criterion": ["test_check.py: pivot or at_once or prisms_cover or halve or weak",
                         *PARTS, BOTH_PATHS],
     "check/exact": ["check/test_exact.py", "test_check.py: exact or one_bound", BOTH_PATHS],
