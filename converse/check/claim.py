@@ -89,9 +89,9 @@ class Claim:
     def moves(self):
         """How v changes along each axis of cells from the middle to the end: step (C26)."""
         n = len(self.half)
-        sides = [tuple([h * (i == j) for j in range(n)]) for i, h in enumerate(self.half)]
         none = (Fraction(0),) * n
-        v0, v1, v2 = [*sides, *[none] * (3 - n)]
+        v0, v1, v2 = [tuple([h * (i == j) for j in range(n)])
+                      for i, h in enumerate((*self.half, *none)[:3])]
         return v0, v1, *self.shifts, *[none] * (3 - len(self.shifts)), v2
 
     def box(self, cell):

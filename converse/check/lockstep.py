@@ -14,8 +14,8 @@ import random
 from dataclasses import replace
 from fractions import Fraction
 
-from .arith import (DIAGONAL, NEWTON_STEPS, ROWS, cofactors, dot, entries, fixed_of, newton, pairs_of, spread,
-                    trace, turn_of, with_determinant)
+from .arith import (DIAGONAL, NEWTON_STEPS, ROWS, cofactors, dot, entries, fixed_of, newton,
+                    pairs_of, spread, trace, turn_of, with_determinant)
 from .claim import ANGLE_AXES
 from .criterion import axes_of
 from .limits import FIRST_TRY_SITES, MAX_HALVINGS, MAX_PIECES, MAX_SITES, SITE_PENALTIES
@@ -178,9 +178,10 @@ class Shape:
         self.strong = table((abs(k) * self.K[:, None]).T)
         self.forms = table(squares.T)
         self.mixed, self.sizes = table(k), table(abs(k))                # k.x of x
-        # Of a site of a lane: s, c, columns, rest, far, E; the inverses of both recursions, n, scores,
-        # and five numbers of a byte.
-        self.site_bytes = 8 * (len(k) * (3 + symbols) + 3 * self.angles + 2 * len(squares[0]) + 1) + 5
+        # Of a site of a lane: s, c, columns, rest, far, E; the inverses of both recursions, n,
+        # scores, and five numbers of a byte.
+        numbers = len(k) * (3 + symbols) + 3 * self.angles + 2 * len(squares[0]) + 1
+        self.site_bytes = 8 * numbers + 5
 
     def in_frame(self, turn):
         """In that frame of the errors: the absolute values of V' from waves, and of k.x from x;
@@ -724,7 +725,7 @@ class Prisms:
         N, shape = len(self.sites), self.shape
         n, tails = self.test_vectors()
         sums = Sums(self.known, shape.parameters, self.l.size)
-        mu = mu1 = np.zeros((shape.angles, 1 + self.known, self.l.size))   # of this site, and the one beyond
+        mu = mu1 = np.zeros((shape.angles, 1 + self.known, self.l.size))    # here, and beyond
         terms, span = 0 * mu[:, 0], max(1, BLOCK // self.l.size)
         for start in reversed(range(0, N if any(x.any() for x in n) else 0, span)):
             sites, n0 = self.sites[start:start + span], stacked(n[start:start + span])

@@ -8,7 +8,8 @@ import math
 import operator
 from fractions import Fraction
 
-from .arith import DIAGONAL, SINE_ERROR, dot, eigenvector, forms, in_units, largest, least, stiffness
+from .arith import (DIAGONAL, SINE_ERROR, dot, eigenvector, forms, in_units, largest, least,
+                    stiffness)
 
 MAX_CELLS = 1 << 15                     # of the torus, about, when B is bounded
 TOLERANCE_BITS = {1: 20, 2: 20, 3: 6}   # by the number of angles; of three, cells are many
@@ -22,11 +23,11 @@ def cell_bound(fixed, waves, amplitudes, y, w):
 
     beta = 2I + sum of m k k', where m = -p sin(k.x + phase).
     Taylor: with z = k.(x - y), of |z| <= X = w sum of |k[i]|, m is at most m(y) - p cos(k.y +
-    phase) z and a rest, the lesser of |p| z^2 / 2 and -m(y) z^2 / 2 + |p z^3| / 6.  The part affine
-    in x has a convex largest eigenvalue, so its maximum lies at a corner of the cell.  The rests
-    add at most the largest eigenvalue of the sum of k k' times a bound of the rest over |z| <= X.
-    As k k' is not below 0, beta is also at most the sum with the largest m: |p|, or m(y) + |p cos
-    (k.y + phase)| X and the rest.  Of three angles, where cells are many, the lesser bound is taken.
+    phase) z and a rest, the lesser of |p| z^2 / 2 and -m(y) z^2 / 2 + |p z^3| / 6. The part affine
+    in x has a convex largest eigenvalue, so its maximum lies at a corner of the cell. The rests add
+    at most the largest eigenvalue of the sum of k k' times a bound of the rest over |z| <= X. As k
+    k' is not below 0, beta is also at most the sum with the largest m: |p|, or m(y) + |p cos (k.y +
+    phase)| X and the rest. Of three angles, where cells are many, the lesser bound is taken.
     """
     bits, one = fixed.bits, fixed.one
     angles = [fixed.sincos(dot(k, y) + phase) for k, phase in waves]

@@ -108,8 +108,9 @@ def test_a_theorem_of_three_angles(proof, run):
     words = " ".join(out.split())
     for said in ("J' = J - grad V(y) of three angles y (modulo 2 pi)",
                  "J2' = J2 + 0.20185848 cos y2 + 0.40371696 cos(y0 + y1 + y2)",
-                 "has no invariant Lagrangian graph (no invariant torus J = P + S'(y) over all three "
-                 "angles, P constant, S periodic and C1)", "y' = (v0 + v1, v0 - v1 + v2, v0 - v2)",
+                 "has no invariant Lagrangian graph (no invariant torus J = P + S'(y) over all "
+                 "three angles, P constant, S periodic and C1)",
+                 "y' = (v0 + v1, v0 - v1 + v2, v0 - v2)",
                  "0 <= v2 / pi <= 2; all others by reversal of time",
                  "x* : 0.575 0.575 0.575"):
         assert said in words, said
@@ -182,7 +183,8 @@ def test_wrong_files_of_three_angles(proof, run):
         text = file_of(more.pop("tree", tree), waves, ends, **more)
         status, out, err = run(text)
         assert (status, out) == (1, "") and why in err and "Traceback" not in err, (why, err)
-    for wave, why in (("1 0 0 0.2", "not K0 K1 K2 PHASE AMPLITUDE"), ("0 0 0 0 1", "k that is zero"),
+    for wave, why in (("1 0 0 0.2", "not K0 K1 K2 PHASE AMPLITUDE"),
+                      ("0 0 0 0 1", "k that is zero"),
                       ("1 0 0.5 0 1", "no integer k")):
         status, out, err = run(file_of(tree, [wave], ends))
         assert (status, out) == (1, "") and why in err
@@ -296,7 +298,7 @@ def test_frames_of_errors(k):
 # ---- claims in one angle
 
 def test_a_claim_in_one_angle():
-    """Waves that are multiples of a vector q are those of the angle q.x: the same B, l and orbits."""
+    """Waves that are multiples of a vector q are those of the angle q.x: B, l, orbits are."""
     draw = random.Random(5)
     for q in ((1, 0), (1, 1), (2, -3), (1, -1, 2)):
         n, size = len(q), sum(x * x for x in q)
@@ -337,8 +339,8 @@ def test_a_map_along_a_diagonal(run):
         criterion = check.Criterion(claim)
         if good:
             tree = found_tree(claim, 2000)
-            status, out, _ = run(file_of(tree, [wave], [(Fraction(0), Fraction(1)),
-                                 (Fraction(0), Fraction(2))], "3.141593 0", "1 1 1 -1", angles=None))
+            ends = [(Fraction(0), Fraction(1)), (Fraction(0), Fraction(2))]
+            status, out, _ = run(file_of(tree, [wave], ends, "3.141593 0", "1 1 1 -1", angles=None))
             assert status == 0 and criterion.axes == [0]
         else:
             with pytest.MonkeyPatch.context() as patch:

@@ -1133,7 +1133,6 @@ def test_taylor_polynomials_of_small_angles():
 
 @pytest.mark.quick
 def test_roots_and_eigenvalues(generator):
-    one = 1 << 64
     for _ in range(4000):
         n = generator.randint(0, 1 << generator.randint(1, 200))
         root = check.upper_sqrt(n)
@@ -1161,7 +1160,8 @@ def some_waves(generator):
 
 def angle_at(wave, y, m=mp):
     k, phase = wave
-    return sum(a * b for a, b in zip(k, y)) + (m.pi * real(phase) if m is mp else math.pi * float(phase))
+    turn = m.pi * real(phase) if m is mp else math.pi * float(phase)
+    return sum(a * b for a, b in zip(k, y)) + turn
 
 
 def v_prime(waves, amplitudes, y, m=mp):
@@ -1387,9 +1387,11 @@ def test_exact_bound(texts, generator, monkeypatch, chosen):
         sites = [lane.sites for lane in prism.lanes]
         if not all(sites):
             continue
-        vectors = check.test_vectors(*[[site.beta for site in lane] for lane in sites], prism.tail(l / one))
+        betas = [[site.beta for site in lane] for lane in sites]
+        vectors = check.test_vectors(*betas, prism.tail(l / one))
         if chosen == "at random" or not any(any(n) for lane in vectors for n in lane):
-            vectors = [[[generator.uniform(-1, 1) for _ in waves[0][0]] for _ in lane] for lane in sites]
+            vectors = [[[generator.uniform(-1, 1) for _ in waves[0][0]] for _ in lane]
+                       for lane in sites]
         n = [check.trimmed([tuple(round(u * 2 ** check.VECTOR_BITS) for u in v) for v in lane])
              for lane in vectors]
         sums = check.SecondVariation(prism, l)

@@ -74,4 +74,3 @@ char *search_half(const void *search, int axis)
 {
     return apm_get_str(((const cv_search *)search)->problem.half[axis]);
 }
-

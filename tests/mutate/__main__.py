@@ -73,8 +73,9 @@ TESTS = {
     "check/field": ["test_tori_bounds.py", "test_tori.py"],
     "check/series": ["test_tori_bounds.py", "test_tori.py"],
     "check/tori": ["test_tori_bounds.py", "test_tori.py"], "check/torus_file": ["test_tori.py"],
-    "check/arith": ["check/test_angles.py: matrices or frames_of", "test_check.py: sincos or taylor "
-                    "or roots", "check/test_exact.py", "check/test_angles.py"],
+    "check/arith": ["check/test_angles.py: matrices or frames_of",
+                    "test_check.py: sincos or taylor or roots",
+                    "check/test_exact.py", "check/test_angles.py"],
     "check/claim": ["test_check.py: numbers or cells or prisms_cover or boxes_cover or header",
                     *PARTS, "check/test_angles.py: one_angle or wrong", BOTH_PATHS],
     "check/cover": ["test_parts.py: enough or centre or periods or reversal",

@@ -2,8 +2,9 @@
 
 import pytest
 
-from converse import FourierMap, Problem, Proof, Settings, Tree, read_input
+from converse import FourierMap, Problem, Proof, Settings, Tree
 from converse import prove as converse_prove
+from converse import read_input
 from converse.commands import map, orbits, prove, tori
 from converse.draw import captions
 from converse.model.region import reduced
