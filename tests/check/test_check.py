@@ -2119,7 +2119,7 @@ def test_lockstep_polynomial(np, generator):
 def test_lockstep_boxes_cover_their_cells(np, texts, generator):
     """Of many claims at a time: the same symbols lead to all amplitudes, and to both angles."""
     kinds = shifted = 0
-    for _ in range(6 * min(TORTURE, 4)):
+    for _ in range(6 * max(1, min(TORTURE, 4))):
         claims = [claim_of(random_text(generator, texts["trig274"], "P", 1, 9)) for _ in range(4)]
         claims = [with_shifts(generator, claim, generator.choice((9, 900))) for claim in claims
                   if claim.examined]
