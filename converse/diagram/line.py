@@ -19,7 +19,7 @@ FINEST = 1 << 14                        # A cell with a torus is left out if so 
 ROUND, LEAST = 8, Fraction(1, 16)       # cells of a round, none of which is much less urgent
 FIRST_POINTS = {1: 1 << 15, 2: 1 << 18}     # of the first try at a cell, by the number of angles
 DOUBT = Fraction(1, 2)                  # of its weight, where the middle of a cell is not excluded
-SEEN, EDGE = 16, 256    # A cell with a torus that is seen is so much less urgent; a neighbour of
+SEEN, EDGE = 16, 32     # A cell with a torus that is seen is so much less urgent; a neighbour of
                         # excluded values is so much more urgent.
 Hint = Tuple[Fraction, Tuple[none.Point, ...]]  # a value, and the x* over which it is excluded
 NEAREST = 8                             # x* of neighbours that are suggested for a cell
@@ -159,7 +159,8 @@ class _Line:
 
     def _cells(self):
         """The cells that are tried next, the widest first, from the top down; one that touches a
-        part without tori counts as if it were wider, one with a torus that is seen as narrower."""
+        part without tori counts as if it were wider, one with a torus that is seen as narrower.
+        First those with a proved torus are halved, until their parts have none."""
         ends = {end for each in self.diagram.none for end in each}
 
         def rank(cell):
@@ -168,18 +169,18 @@ class _Line:
             return (cell.low - cell.high) * urgency / (SEEN if seen else 1), -cell.low
 
         tori = [(each.low, each.high) for each in self.diagram.tori]
-        todo, chosen = sorted(self.cells, key=rank), []     # type: List[Cell], List[Cell]
-        while todo and len(chosen) < ROUND and (
-                not chosen or rank(todo[0])[0] <= LEAST * rank(chosen[0])[0]):
-            cell = todo.pop(0)
+        todo, free = list(self.cells), []       # type: List[Cell], List[Cell]
+        for cell in todo:
             inside = [each for each in tori if each[0] <= cell.high and cell.low <= each[1]]
             if not inside:
-                chosen.append(cell)
-            elif not any(low <= cell.low and cell.high <= high for low, high in inside):
-                todo += cell.halves(False) if cell.high - cell.low > self.grain else ()
-                todo.sort(key=rank)
-        self.cells = todo
-        return chosen
+                free.append(cell)
+            elif cell.high - cell.low > self.grain and not any(
+                    low <= cell.low and cell.high <= high for low, high in inside):
+                todo += cell.halves(False)
+        free.sort(key=rank)
+        count = sum(rank(cell)[0] <= LEAST * rank(free[0])[0] for cell in free[:ROUND])
+        self.cells = free[count:]
+        return free[:count]
 
     def _divided(self, cell):
         """The parts of the whole range, with ends of few decimals."""
