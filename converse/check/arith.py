@@ -109,15 +109,20 @@ def in_units(fixed, waves):
 
 
 def dot(k, x):
+    if len(k) == 2:                     # which is faster
+        return k[0] * x[0] + k[1] * x[1]
+    if len(k) == 3:
+        return k[0] * x[0] + k[1] * x[1] + k[2] * x[2]
     return sum(map(operator.mul, k, x))
 
 
 def combined(k, rows):
     """The sum of k[i] times row i, of integer k that are not all 0."""
-    (first, row), *more = [pair for pair in zip(k, rows) if pair[0]]
-    found = [first * a for a in row]
-    for x, row in more:
-        found = [a + x * b for a, b in zip(found, row)]
+    found = None
+    for x, row in zip(k, rows):
+        if x:
+            found = [a + x * b for a, b in zip(found, row)] if found else \
+                row if x == 1 else [x * a for a in row]
     return found
 
 
@@ -146,6 +151,9 @@ BESIDE = {count: [(rows[i][i], rows[i][j], rows[j][j]) for i in range(len(rows))
 
 def times(d, v):
     """A symmetric matrix times a vector."""
+    if len(v) == 2:
+        (a, b, c), (x, y) = d, v
+        return [a * x + b * y, b * x + c * y]
     return [dot(row, v) for row in full(d)]
 
 
@@ -164,11 +172,11 @@ def cofactors(d, sign=-1):
 
 def with_determinant(d):
     """The cofactors and the determinant, by the first row."""
+    if len(d) == 3:                     # which is faster
+        a, b, c = d
+        return [c, -b, a], a * c - b * b
     found = cofactors(d)
-    det = d[0] * found[0]
-    for at in range(1, len(DIAGONAL[len(d)])):
-        det = det + d[at] * found[at]
-    return found, det
+    return found, dot(d[:len(DIAGONAL[len(d)])], found)
 
 
 def determinant(rows):

@@ -20,9 +20,10 @@ THESIS = (1, 0), (0, 1), (1, 1)         # k of the three waves of the thesis
 IDENTITY = 1, 0, 0, 1                   # frames
 # v0 is the mean of the coordinates, and n v1, n v2 are the differences of neighbours.
 DIAGONALS = {2: (1, 1, 1, -1), 3: (1, 2, 1, 1, -1, 1, 1, -1, -2)}
-# A parameter's name; not one of these, which mean something else in a theorem.
+# A parameter's name; not one of these, which mean something else in a theorem: the last two in one
+# about three angles.
 NAME = re.compile(r"[^\W\d]\w{0,30}(\[[0-9]{1,9}\])?")
-RESERVED = {"y", "y0", "y1", "y2", "J", "J0", "J1", "J2", "V", "P", "S", "pi", "sin", "cos"}
+RESERVED = "y", "y0", "y1", "J", "J0", "J1", "V", "P", "S", "pi", "sin", "cos", "y2", "J2"
 LETTERS = "abcdefghijklmnopqrstuvwxyz"  # of parts, and of leaves linked to them
 
 

@@ -11,7 +11,7 @@ import collections
 import itertools
 import math
 
-from .arith import (DIAGONAL, combined, dot, eigenvector, entries, full, least, pairs_of, times,
+from .arith import (DIAGONAL, combined, dot, eigenvector, entries, least, pairs_of, times,
                     turn_of, with_determinant)
 from .limits import FIRST_TRY_SITES, MAX_SITES
 
@@ -37,6 +37,10 @@ class Prism:
     def __init__(self, fixed, waves, xstar, x1, symbols):
         self.fixed, self.waves, self.symbols = fixed, waves, symbols
         self.pairs = pairs_of(symbols)
+        # Where e[i]^2 stands among them; and for each i the places of e[i] e[j], with j.
+        self.squared = [at for at, (i, j) in enumerate(self.pairs) if i == j]
+        self.with_symbol = [[(at, sum(pair) - m) for at, pair in enumerate(self.pairs) if m in pair]
+                            for m in range(symbols)]
         self.turn = turn_of([(wave.k, abs(wave.amplitude)) for wave in waves], len(xstar))
         self.squares = [entries(wave.k) for wave in waves]
         start = xstar, [[0] * symbols for _ in xstar], [1 for _ in xstar]
@@ -50,9 +54,11 @@ class Prism:
 
     def penalized(self, site, penalties):
         """beta at a site plus a penalty for the reach there, which makes the bound larger."""
-        more = [size * (penalties[0] + penalties[1] * reach) * reach
-                for size, reach in zip(self.sizes, site.reach)]
-        return [x + dot(more, column) for x, column in zip(site.beta, zip(*self.squares))]
+        beta = site.beta
+        for size, reach, squares in zip(self.sizes, site.reach, self.squares):
+            more = size * (penalties[0] + penalties[1] * reach) * reach
+            beta = [x + more * y for x, y in zip(beta, squares)]
+        return beta
 
 
 class Lane:
@@ -81,7 +87,7 @@ class Lane:
         1, or the matrices are singular."""
         prism, x, r = self.prism, self.x, self.r
         fixed, pairs, symbols, length = prism.fixed, prism.pairs, prism.symbols, prism.turn.length
-        bits, one, sincos = fixed.bits, fixed.one, fixed.sincos
+        bits, one, sincos, squared = fixed.bits, fixed.one, fixed.sincos, prism.squared
         waves, reaches, bend = [], [], [0] * (len(x) * (len(x) + 1) // 2)      # V''
         E, push, errors = [[0] * len(x) for _ in "123"]
         new = [[2 * a - b for a, b in zip(row, row0)] for row, row0 in zip(self.LT, self.LT0)]
@@ -90,8 +96,8 @@ class Lane:
             along = combined(k, self.LT)
             xi, tau = along[:symbols], along[symbols:]
             size = sum(map(abs, xi))
-            rest = -(-dot(strong, r) // length) + (sum([
-                abs(y) if i == j else 2 * abs(y) for (i, j), y in zip(pairs, tau)]) + 1 >> 1)
+            rest = -(-dot(strong, r) // length) + sum(map(abs, tau)) \
+                - (sum([abs(tau[at]) for at in squared]) >> 1)
             reach = size + rest
             if reach > one:
                 return False
@@ -110,11 +116,11 @@ class Lane:
             for m, part in parts:
                 sine_part, cosine_part = part * s >> bits, part * c >> bits
                 moved.append((m, cosine_part, sine_part))
-                form = [y + sine_part * xi[i + j - m] if m in (i, j) else y
-                        for (i, j), y in zip(pairs, form)]
+                for at, j in prism.with_symbol[m]:
+                    form[at] += sine_part * xi[j]
                 bent += ((3 * abs(cosine_part) * square + abs(sine_part) * (6 * rest + cube))
                          // 6 >> bits) + 1
-            mean = sum([y for (i, j), y in zip(pairs, form) if i == j]) >> bits + 1
+            mean = sum([form[at] for at in squared]) >> bits + 1
             form = [0] * symbols + form
             for m, cosine_part, _ in moved:
                 form[m] -= cosine_part << bits
@@ -155,16 +161,14 @@ class Lane:
         if self.d is None:
             f = [x + y for x, y in zip(self.r0, error)]
         else:
-            (found, det), one, d = with_determinant(self.d), 1 << 2 * bits, full(self.d)
+            found, det = with_determinant(self.d)
             if abs(det) << 60 < 1 << bits * len(r):
                 return False
-            M = [x * one // det for x in found]             # near the inverse of d
-            beta, f = [x - y for x, y in zip(beta, M)], []
-            for i, (row, more) in enumerate(zip(full(M), error)):
-                # A row of I - M d.
-                off = [abs(one * (i == j) - dot(row, column)) for j, column in enumerate(d)]
-                f.append((dot(map(abs, row), self.f) + (dot(off, self.r0) >> bits) >> bits) + 2
-                         + more)
+            M = [(x << 2 * bits) // det for x in found]     # the inverse of d, rounded
+            # No row of |I - M d| |r0| is more, because M is off by less than a unit.
+            off = sum(times([*map(abs, self.d)], self.r0)) >> bits
+            beta = [x - y for x, y in zip(beta, M)]
+            f = [(x + off >> bits) + 2 + y for x, y in zip(times([*map(abs, M)], self.f), error)]
         self.d, self.f = beta, f
         self.r0, self.r = r, [(y >> bits) + 1 + z for y, z in zip(times([*map(abs, beta)], r), f)]
         return True

@@ -98,10 +98,10 @@ def parameter_names(lines, waves):
     A parameter that moves a wave must have two values: then it is an affine function of t, and t
     one of it, so that the claim can be stated in it.
     """
-    found = []
+    found, reserved = [], RESERVED if len(waves[0].k) > 2 else RESERVED[:-2]
     for at, line in enumerate(lines, 1):
         title, words = "the header's parameter %d" % at, line.split(" ", 3)
-        if len(words) != 3 or not NAME.fullmatch(words[0]) or words[0] in RESERVED:
+        if len(words) != 3 or not NAME.fullmatch(words[0]) or words[0] in reserved:
             raise Rejected(title + " is not a name of a parameter and two numbers")
         found.append((words[0], *[number(word, title) for word in words[1:]]))
     count = len(waves[0].parts)

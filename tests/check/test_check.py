@@ -264,7 +264,8 @@ def test_the_theorem_is_stated_in_the_named_parameters(run, tmp_path):
              "0.001 <= \u03b5[1] <= 0.002\nand for any multiple of V at \u03b5[1] = 0.002, "),
             ("K -1 -1.2", "-2.5 K cos y", "- 2.5 K sin y",
              "-1.2 <= K <= -1\nand for any K < -1.2 "),
-            ("K 0 3", "(2.5 + 1/6 K) cos y", "(2.5 + 1/6 K) sin y", "0 <= K <= 3\n")):
+            ("K 0 3", "(2.5 + 1/6 K) cos y", "(2.5 + 1/6 K) sin y", "0 <= K <= 3\n"),
+            ("J2 0 3", "(2.5 + 1/6 J2) cos y", "(2.5 + 1/6 J2) sin y", "0 <= J2 <= 3\n")):
         status, out, _ = run(sealed(with_field(text, "parameter", line)))
         assert "\nV(y) = %s,\nthat is, J' = J %s,\n" % (V, force if force[0] == "-"
                                                        else "+ " + force) in out
@@ -804,8 +805,8 @@ def test_the_format_names_what_the_checker_knows(root, texts, monkeypatch):
     monkeypatch.undo()                          # the limits themselves
     page = (root / "docs/reference/proof-file.md").read_text(encoding="utf-8")
     header = page[page.index("## The header"):page.index("## The tree")]
-    names = set(re.findall("`([^`\n]+)`", header)) - {"sound", "yes", "no", "0", "1", "upper end",
-                                                      "as printed, not a proof"}
+    names = set(re.findall("`([^`\n]+)`", header)) - {"sound", "yes", "no", "0", "1", "3",
+                                                      "upper end", "as printed, not a proof"}
     assert names == check.FIELDS | check.OPTIONAL
     fields = (root / "docs/reference/map-file.md").read_text(encoding="utf-8")
     names = re.findall("(?m)^\\| ((?:`[a-z]+`,? ?)+) \\|", fields.partition("## What")[0])
