@@ -409,7 +409,7 @@ CONTINUE = "; converse -r FILE goes on with the search\n"
     ("0P", "incomplete: 1 of its parts are missing" + CONTINUE), ("PP", "ends before"),
     ("0PPP", "ends before"), ("U", "undecided"), ("0PU", "undecided"), ("2PPP", "ends before"),
     ("2P", "incomplete"), ("p", "not a node"), ("0 PP", "not a node"),
-    ("5PP", "'5' is not a node of a finished tree, at node 0\n"),
+    ("6PP", "'6' is not a node of a finished tree, at node 0\n"),
     ("?", "not a node of a finished tree, at node 0" + CONTINUE), ("3P?", "not a node"),
     ("4?P", "not a node"),
     ("0" * 1200, "the checker's limit"), ("0" * 40 + "P" * 41, "depth")])

@@ -323,7 +323,7 @@ def test_dask_loses_a_worker(proof, cluster):
 def test_a_scheduler_that_does_not_answer_is_called_so():
     """Its process may be stopped, or its machine: nobody knows what workers there are."""
     class Silent:
-        status = "running"
+        status, submit = "running", None
 
         def nthreads(self, callback_timeout):
             raise TimeoutError
