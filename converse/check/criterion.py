@@ -54,7 +54,7 @@ class Criterion:
         units = in_units(coarse, waves)
         found = {ends: torus_bound(coarse, units, ends) + stiffness(units) << bits - coarse.bits
                  for ends in set(apart)} if waves else {}
-        self.B_at = [found.get(ends, 0) for ends in apart]
+        self.B_at = [found.get(ends, 2 * one + 1) for ends in apart]    # beta = 2 without waves
         self.B = max(self.B_at)
         if self.B <= 2 * one:
             # The tails of step (C2) must be square-summable, l < 1, which needs B > 2.
@@ -156,8 +156,9 @@ class Criterion:
 
     def at_once(self):
         """Is B > 10/3 for all parameters, or where that is claimed, at the upper end?"""
-        return is_at_once(self.coarse, self.reduced.waves,
-                          (1,) if self.claim.at_once == "upper end" else None)
+        waves = self.reduced.waves          # without which B is 2
+        return bool(waves) and is_at_once(self.coarse, waves,
+                                          (1,) if self.claim.at_once == "upper end" else None)
 
     def not_at_once(self):
         """Is B <= 10/3 for some of these parameters?  Those nearest to 0 are tried, about."""
@@ -172,7 +173,8 @@ class Criterion:
             t = (1,)
         one, units = self.coarse.one, in_units(self.coarse, waves)
         nearest = tuple([math.floor(wave.at(t) * one) for wave in waves])
-        return 3 * (torus_bound(self.coarse, units, [nearest]) + stiffness(units)) <= 10 * one
+        return not waves or \
+            3 * (torus_bound(self.coarse, units, [nearest]) + stiffness(units)) <= 10 * one
 
 
 def check_at_once(criterion):

@@ -11,8 +11,8 @@ import collections
 import itertools
 import math
 
-from .arith import (DIAGONAL, combined, dot, eigenvector, entries, least, pairs_of, times,
-                    turn_of, with_determinant)
+from .arith import (DIAGONAL, combined, dot, eigenvector, entries, least, pairs_of, times, turn_of,
+                    with_determinant)
 from .limits import FIRST_TRY_SITES, MAX_SITES
 
 VECTOR_BITS = 28                        # of the vectors; the multipliers have twice as many

@@ -91,7 +91,7 @@ def plan(found: Found, margin: float = MARGIN, more: float = 1.0,
     theorem = _Needed(found)
     if alpha is not None or found.mesh.potential.dimension == 1:
         return theorem.plan(alpha or (1,), margin, more)
-    ratio = found.rates[0] / found.rates[1]
+    ratio = found.rates[0] / found.rates[-1]        # one rate, if the waves span a line
 
     def cost(each):
         aim = theorem.plan(each, margin, 1)

@@ -196,22 +196,6 @@ def test_refinement_begins_with_what_is_below_the_noise(monkeypatch):
     assert begun[0] < 1e-12
 
 
-@pytest.mark.slow
-def test_an_error_is_not_computed_anew_for_another_norm(monkeypatch):
-    """At k = 0.97 three strips are tried; at 0.971 the second mesh is larger."""
-    errors, refined, calls = refinement.errors, sys.modules["converse.tori.find"].refined, []
-
-    def counted(name, call):
-        return lambda *given: calls.append(name) or call(*given)
-
-    monkeypatch.setattr(refinement, "errors", counted("error", errors))
-    monkeypatch.setattr(sys.modules["converse.tori.find"], "refined", counted("norm", refined))
-    for k, most in ("0.97", 2), ("0.971", 2):       # three times, if for each strip
-        find(MuldoonMap(k, 0, 0), GOLDEN)
-        assert calls.count("error") <= most
-        calls.clear()
-
-
 def test_what_does_not_go_together_is_refused():
     with pytest.raises(TypeError, match="a text such as 'golden'"):
         find(Problem(MuldoonMap("0.5", 0, 0)), 0.618)
