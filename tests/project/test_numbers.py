@@ -234,7 +234,7 @@ def test_what_a_referee_reads():
     sources = [(ROOT / "converse" / "check" / (name + ".py")).read_text("utf-8")
                for name in modules]
     found = sum(len(source.splitlines()) for source in sources)
-    assert abs(found / int(count.replace(",", "")) - 1) <= 0.05 and found <= 1950
+    assert abs(found / int(count.replace(",", "")) - 1) <= 0.05 and found <= 2150
     for source in sources:
         for name in re.findall(r"^ *from \.([a-z_]+) import", source, re.MULTILINE):
             assert name in modules
