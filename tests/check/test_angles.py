@@ -15,27 +15,8 @@ from files import sealed
 from converse.check import main
 
 from checker import check
-from trees import found_tree
+from trees import HEAD, found_tree
 
-HEAD = """converse proof 6
-kind: sound
-program: by hand
-method: loewner
-digits: 0
-stubborn: 0
-quick_tries: 0
-tries: 0
-Rtries: 0
-HermSuccess: 0
-LLSuccess: 0
-ll_used: 0
-reasons: none
-max_steps: 0
-max_NTsteps: 0
-B: 0
-pending: 0
-at once: no
-"""
 UNITS = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 XSTAR = "0.575 0.575 0.575"
 DIAGONAL = "1 1 0 1 -1 1 1 0 -1"         # its first column is (1, 1, 1)
@@ -62,7 +43,7 @@ def file_of(tree, waves, ends, xstar=XSTAR, frame=DIAGONAL, **fields):
                                        check.decimal_text((high - low) / 2))
                  for i, (low, high) in enumerate(ends)}}
     header.update({name.replace("_", " "): value for name, value in fields.items()})
-    return sealed(HEAD + "".join("wave: %s\n" % wave for wave in waves)
+    return sealed(HEAD + "at once: no\n" + "".join("wave: %s\n" % wave for wave in waves)
                   + "".join("%s: %s\n" % item for item in header.items() if item[1] is not None)
                   + "tree:\n%s\n" % tree)
 

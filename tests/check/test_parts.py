@@ -21,27 +21,9 @@ from converse.check import main, verify
 from converse.model.map import SymplecticMap
 
 from checker import check
-from trees import found_tree, halves
+from trees import HEAD, found_tree, halves
 
 VERIFIED = ROOT / "formal" / "build" / "converse-verified"      # of make verified-check
-HEAD = """converse proof 6
-kind: sound
-program: by hand
-method: loewner
-digits: 0
-stubborn: 0
-quick_tries: 0
-tries: 0
-Rtries: 0
-HermSuccess: 0
-LLSuccess: 0
-ll_used: 0
-reasons: none
-max_steps: 0
-max_NTsteps: 0
-B: 0
-pending: 0
-"""
 SYMMETRIC = ["1 0 0 0.2242872", "0 1 0 0.2242872", "1 1 0 0.4485744"]       # epsilon = 0.02
 XSTAR, OTHER = "0.858 0.858", "0.875 0.875"
 ASIDE = "0.875 0.8751"                  # where no part stands for its mirror image

@@ -1,8 +1,27 @@
-"""Trees for the files that tests make up."""
+"""Trees and the head of the files that tests make up."""
 
 import numpy as np
 
 from checker import check
+
+HEAD = """converse proof 6
+kind: sound
+program: by hand
+method: loewner
+digits: 0
+stubborn: 0
+quick_tries: 0
+tries: 0
+Rtries: 0
+HermSuccess: 0
+LLSuccess: 0
+ll_used: 0
+reasons: none
+max_steps: 0
+max_NTsteps: 0
+B: 0
+pending: 0
+"""
 
 
 def halves(cell, axis):
