@@ -9,6 +9,7 @@ import itertools
 import math
 from fractions import Fraction
 
+from .arith import determinant, dot, inverse_rows
 from .failures import NotConfirmed, Rejected
 
 MAX_DIVISORS = 1 << 21                  # of a rotation, computed one by one
@@ -22,18 +23,16 @@ LARGE = "the rotation vector has too large coefficients for this checker"
 SHY = 16                                # Divisors above SHY times the tail's bound do not count.
 
 
-def rounded_up(x, bits=80):
+def rounded_up(x, bits=80, sign=-1):
     """A dyadic rational not below x >= 0, and above it by less than 2^(1-bits) of it."""
     shift = bits - x.numerator.bit_length() + x.denominator.bit_length()
-    scaled = -(-(x.numerator << max(shift, 0)) // (x.denominator << max(-shift, 0)))
+    scaled = sign * ((sign * x.numerator << max(shift, 0)) // (x.denominator << max(-shift, 0)))
     return Fraction(scaled << max(-shift, 0), 1 << max(shift, 0))
 
 
 def rounded_down(x, bits=80):
     """A dyadic rational not above x >= 0, and below it by less than 2^(1-bits) of it."""
-    shift = bits - x.numerator.bit_length() + x.denominator.bit_length()
-    scaled = (x.numerator << max(shift, 0)) // (x.denominator << max(-shift, 0))
-    return Fraction(scaled << max(-shift, 0), 1 << max(shift, 0))
+    return rounded_up(x, bits, 1)
 
 
 def upper_root(x):
@@ -173,7 +172,8 @@ class Field:
     def norm_denominator(self, elements):
         """The common denominator of the coefficients of det(p + sum of m_j M_j), a polynomial in p
         and m, M_j the matrix of the multiplication by the element j."""
-        size_, units = self.degree, [tuple(map(int, row)) for row in identity(self.degree)]
+        size_ = self.degree
+        units = [tuple([int(i == j) for j in range(size_)]) for i in range(size_)]
         matrices = [units] + [[self.product(element, unit) for unit in units]
                               for element in elements]
         total = {}
@@ -188,27 +188,9 @@ class Field:
         return math.lcm(*[value.denominator for value in total.values()])
 
 
-def identity(n):
-    return [[Fraction(i == j) for j in range(n)] for i in range(n)]
-
-
-def determinant(rows):
-    """The determinant of a matrix of one or two rows."""
-    return rows[0][0] if len(rows) == 1 else rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
-
-
-def inverse_matrix(rows):
-    """The inverse of such a matrix of rationals."""
-    if len(rows) == 1:
-        return [[1 / Fraction(rows[0][0])]]
-    (a, b), (c, d) = rows
-    det = Fraction(determinant(rows))
-    return [[d / det, -b / det], [-c / det, a / det]]
-
-
 def combination(numbers, vectors):
     """The sum of number times vector."""
-    return tuple([sum([x * y for x, y in zip(numbers, column)]) for column in zip(*vectors)])
+    return tuple([dot(numbers, column) for column in zip(*vectors)])
 
 
 class Norm:
@@ -220,13 +202,12 @@ class Norm:
         self.frame, self.alpha, self.dimension = frame, alpha, len(alpha)
         # The ball |k| <= 1 is the convex hull of these and their opposites.
         self.vertices = [tuple(x / a for x in column)
-                         for column, a in zip(zip(*inverse_matrix(frame)), alpha)]
+                         for column, a in zip(zip(*inverse_rows(frame)), alpha)]
         self.basis = self._balanced(basis)
         self.kappa = max(upper_root(sum(x * x for x in v)) for v in self.vertices)
 
     def __call__(self, k):
-        return sum([a * abs(sum([x * y for x, y in zip(row, k)]))
-                    for a, row in zip(self.alpha, self.frame)])
+        return sum([a * abs(dot(row, k)) for a, row in zip(self.alpha, self.frame)])
 
     def count(self, limit):
         """About how many k of the lattice have |k| <= limit."""
@@ -253,7 +234,7 @@ class Norm:
     def forms(self, b):
         """The l_i.k of k = a b_0 + b b_1: (at a = 0, per a)."""
         last = self.basis[1] if self.dimension > 1 else (0,)
-        return [[sum([x * y for x, y in zip(row, v)]) for row in self.frame]
+        return [[dot(row, v) for row in self.frame]
                 for v in ([b * x for x in last], self.basis[0])]
 
     def lengths(self, b, low, top):
@@ -263,7 +244,7 @@ class Norm:
 
     def coordinates(self, k, basis=None):
         """The coordinates of k in the lattice's basis: rationals, integers on the lattice."""
-        return combination(k, inverse_matrix(basis or self.basis))
+        return combination(k, inverse_rows(basis or self.basis))
 
     def place(self, k):
         """The coordinates of k in the lattice's own basis; None: k is not in the lattice."""
@@ -391,7 +372,7 @@ class Divisors:
         lattice = itertools.product(*[range(-r, r + 1) for r in reach[1:]], range(reach[0] + 1))
         for *rest, first in lattice:
             m = (first, *rest)
-            turn = sum([x * y for x, y in zip(m, steps)]) % one
+            turn = dot(m, steps) % one
             near = min(turn, one - turn)
             length = self.norm(combination(m, self.norm.basis))
             if not 0 < length <= radius:

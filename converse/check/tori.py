@@ -14,9 +14,9 @@ from collections import Counter
 from dataclasses import dataclass
 from fractions import Fraction
 
-from .arith import GUARD, fixed_of
+from .arith import GUARD, dot, fixed_of
 from .failures import NotConfirmed, Rejected, Unusable, named
-from .field import (E_LOW, Divisors, Field, Norm, combination, exponential_above, identity,
+from .field import (E_LOW, Divisors, Field, Norm, combination, exponential_above,
                     rounded_down, rounded_up, upper_root)
 from .limits import MAX_BITS
 from .processes import ProcessDied, in_order
@@ -55,7 +55,7 @@ def lattice(vectors, n):
                 factor = row[column] // some[0][column]
                 row[:] = [x - factor * y for x, y in zip(row, some[0])]
         if not some:
-            return [tuple(map(int, row)) for row in identity(n)]
+            return [tuple([int(i == j) for j in range(n)]) for i in range(n)]
         found.append(tuple(some[0]))
         rows = [row for row in rows if row is not some[0]]
     return found
@@ -180,19 +180,6 @@ def roots_of_one(size, sign):
     return [cmath.exp(sign * 2j * cmath.pi * j / size) for j in range(size // 2)]
 
 
-def transform_all(values, shape, sign):
-    """Transforms an array of that shape along each axis, the last axis being the fastest."""
-    step = 1
-    for size in reversed(shape):
-        if size > 1:
-            for start in range(len(values)):
-                if start // step % size == 0:
-                    line = slice(start, start + size * step, step)
-                    values[line] = transform(values[line], sign)
-        step *= size
-    return values
-
-
 def power_of_two(x):
     return 1 << max(x - 1, 0).bit_length()
 
@@ -231,16 +218,15 @@ class Torus:
         self.modes = {}
         for k, series in piece.modes.items():
             if any(any(map(any, vector)) for vector in series):
-                turns = sum([x * y for x, y in zip(k, shift)]) % 4
+                turns = dot(k, shift) % 4
                 series = [[turn(*x, turns) for x in vector] for vector in series]
                 self.modes[k] = [[(0, im) for _, im in vector] for vector in series] \
                     if is_odd else series
         self.waves = []                 # (k, phase, p at the middle, p's part)
         for wave in claim.waves:
             part = wave.parts[0] if wave.parts else Fraction(0)
-            self.waves.append((wave.k[:self.n],
-                               wave.phase + Fraction(sum(
-                                   [x * y for x, y in zip(wave.k, shift)]), 2),
+            k = wave.k[:self.n]
+            self.waves.append((k, wave.phase + Fraction(dot(k, shift), 2),
                                wave.middle + part * middle, part * half))
         self.varies = any(part for *_, part in self.waves)
         # Of each k |k|, |u_k| summed over the powers of s, and |k| as a vector in units of 2^-32.
@@ -291,7 +277,7 @@ class Torus:
         whole = 1 << fine + 64
 
         def of(m):
-            part = sum([x * y for x, y in zip(m, steps)]) % whole
+            part = dot(m, steps) % whole
             sin, cos = fixed.sincos(part * fixed.two_pi >> fine + 64 + GUARD)
             return cos, sin
         return of
@@ -324,7 +310,7 @@ def quarter_turns(piece, n):
     for shift in itertools.product((0, 1), repeat=n):
         sums = [0, 0]
         for k, *sizes in parts:
-            turns = sum([x * y for x, y in zip(k, shift)]) % 2
+            turns = dot(k, shift) % 2
             sums[0] += sizes[turns]
             sums[1] += sizes[1 - turns]
         found.append((shift, *sums))
@@ -415,33 +401,28 @@ def delayed(torus, ring, f):
 
 
 def approximate_inverse(torus, ring, f, near):
-    """A polynomial with modes |k| <= near, near the inverse: chosen with doubles on a grid."""
+    """A polynomial with modes |k| <= near, near the inverse: chosen with doubles at points of a line
+    that winds about the torus, where k = (a, b) and s^j turn as often as the place of (k, j)."""
     box, step = ring.box, torus.degree + 1
-    reach = [math.floor(w * near) for w in torus.norm.widths()] + [0]
-    shape = [power_of_two(3 * reach[1] + 1), power_of_two(3 * reach[0] + 1),
-             power_of_two(2 * step) if step > 1 else 1]
-    size = math.prod(shape)
+    deep, wide, high = [*map(power_of_two, (2 * step if step > 1 else 1, *[
+        3 * math.floor(w * near) + 1 for w in torus.norm.widths()])), 1][:3]
+    size = deep * wide * high
     if size * len(f.entries) > MAX_GRID:
         raise NotConfirmed("a grid of %d points is needed, the checker's limit is %d"
                            % (size, MAX_GRID // len(f.entries)))
-    places = []                         # of the modes |k| <= near
-    for at, (m, length) in enumerate(zip(box.modes(), box.lengths)):
-        if length <= near:
-            a, b = (*m, 0)[:2]
-            place = (b % shape[0] * shape[1] + a % shape[1]) * shape[2]
-            places += [(at * step + j, place + j) for j in range(step)]
-    grids = []
+    places = [(at * step + j, ((a + b * wide) * deep + j) % size)
+              for at, (m, length) in enumerate(zip(box.modes(), box.lengths)) if length <= near
+              for a, b in [(*m, 0)[:2]] for j in range(step)]
+    grids, entries = [], []
     for re, im in f.entries:
         values = [0j] * size
         for at, place in places:
             values[place] = complex(in_double(re[at], ring.bits),
                                     in_double(im[at], ring.bits) if im else 0.0)
-        grids.append(transform_all(values, shape, 1))
+        grids.append(transform(values, 1))
     try:
-        grids = list(map(list, zip(*map(inverse_in_doubles, zip(*grids)))))
-        entries = []
-        for values in grids:
-            values = transform_all(values, shape, -1)
+        for values in zip(*map(inverse_in_doubles, zip(*grids))):
+            values = transform(values, -1)
             re, im = [0] * box.count, [0] * box.count
             for at, place in places:
                 re[at] = round(math.ldexp(values[place].real, ring.bits)) // size

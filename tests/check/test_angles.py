@@ -111,7 +111,7 @@ def test_integers_say_the_same(proof):
 
 def test_where_tori_are_seen_nothing_is_verified(proof, run, monkeypatch):
     """The line at 0.002, with the tree of 0.018; and three standard maps, each with circles."""
-    monkeypatch.setattr(check, "MAX_PIECES", 64)
+    monkeypatch.setattr(check, "MAX_PIECES", 16)
     tree = proof[0]
     weak = ["1 0 0 0 0.9", "0 1 0 0 0.95", "0 0 1 0 0.97"]
     for waves, xstar in ((line("0.002"), XSTAR), (weak, "0 1.5707963 0"),
@@ -169,6 +169,9 @@ def test_wrong_files_of_three_angles(proof, run):
                       ("1 0 0.5 0 1", "no integer k")):
         status, out, err = run(file_of(tree, [wave], ends))
         assert (status, out) == (1, "") and why in err
+    for name in ("y2", "J2"):           # which stand for something else in this theorem
+        status, out, err = run(file_of(tree, ["1 1 1 0 1 0.1"], ends, parameter=name + " 0 1"))
+        assert (status, out) == (1, "") and "is not a name of a parameter" in err
 
 
 def test_a_cut_of_v2_in_a_file_of_two_angles(run):
@@ -180,7 +183,7 @@ def test_a_cut_of_v2_in_a_file_of_two_angles(run):
 
 def test_parts_of_three_angles(run):
     """A leaf is linked to a part at the same x*, whose region has to hold it."""
-    waves = line("0.02")
+    waves = line("0.018")               # of which B is known
     ends, counts = half(waves), {"cuts": 0, "proved": 1, "linked": 1}
     for margin, status in ((0, 0), (-1, 5)):
         text = file_of("a", waves, ends, **counts).rpartition("checksum")[0]
@@ -196,7 +199,7 @@ def test_parts_of_three_angles(run):
 def test_the_bound_over_three_angles():
     """B of the line is at the sines' common least value; of standard maps that of the largest."""
     fixed = check.fixed_of(96)
-    for waves, corner, B in ((UNITS + ((1, 1, 1),), (0.2, 0.2, 0.2, 0.4), None),
+    for waves, corner, B in ((UNITS + ((1, 1, 1),), (0.1, 0.12, 0.1, 0.2), None),
                              (UNITS, (0.3, -0.5, 0.2), 2.5)):
         known = [(k, 0) for k in waves]
         bound = check.torus_bound(fixed, known, [tuple(int(p * fixed.one) for p in corner)])
@@ -325,7 +328,7 @@ def test_a_map_along_a_diagonal(run):
             assert status == 0 and criterion.axes == [0]
         else:
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(check, "MAX_PIECES", 64)
+                patch.setattr(check, "MAX_PIECES", 16)
                 assert criterion.excluded(check.ROOT)[0]
 
 

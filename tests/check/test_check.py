@@ -1301,9 +1301,10 @@ def random_prism(generator, texts, most=12, shift="0.1"):
             return criterion, cell, criterion.prism(cell)
 
 
-def true_point(generator, criterion, cell):
+def true_point(generator, criterion, cell, corner=False):
     """Symbols, and the amplitudes, x[0] and x[1] that they stand for, exact."""
-    claim, eta = criterion.reduced, [near(generator) for _ in range(6)]
+    claim = criterion.reduced
+    eta = [Fraction(generator.choice((-1, 1))) if corner else near(generator) for _ in range(6)]
     along = [Fraction(2 * i + 1 + e, 1 << k) - 1 for i, k, e in zip(*cell, eta)]
     v = [c % 2 + h * t + s for c, h, t, s in zip(claim.centre, claim.half, along,
                                                  moved_by(claim, along))]
@@ -1345,13 +1346,14 @@ def pairs_of(eta):
 
 @pytest.mark.quick
 def test_exact_orbits(texts, generator, monkeypatch):
-    """True orbits of a prism are where the centres and columns say, within the errors."""
+    """True orbits of a prism are where the centres and columns say, within the errors; of its
+    corners, where the models miss most, a tenth of the sites need a twentieth of that, or more."""
     monkeypatch.setattr(check, "torus_bound", lambda fixed, *_: 4 * fixed.one)      # unused
     cases = tight = turned = 0
     for _ in range(60 * TORTURE):
         criterion, cell, prism = random_prism(generator, texts)
         one, waves = mp.mpf(criterion.fixed.one), waves_of(criterion.reduced)
-        eta, amplitudes, angles = true_point(generator, criterion, cell)
+        eta, amplitudes, angles = true_point(generator, criterion, cell, generator.random() < 0.7)
         amplitudes = [real(x) for x in amplitudes]
         if max(map(abs, criterion.reduced.frame)) > 1:
             angles[1] = [y + 2 * mp.pi * mp.nint((x / one - y) / (2 * mp.pi))
@@ -1371,7 +1373,7 @@ def test_exact_orbits(texts, generator, monkeypatch):
                 cases += 1
                 tight += any(abs(gap) > rest / 20 for gap, rest in zip(gaps, lane.r))
                 turned += prism.turn.table is not None
-    assert cases > 180 * TORTURE and tight > cases / 15 and turned > 20
+    assert cases > 180 * TORTURE and tight > cases / 10 and turned > 20
 
 
 @pytest.mark.parametrize("chosen", ["by the checker", "at random"])
