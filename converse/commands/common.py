@@ -104,15 +104,13 @@ def seconds(text):
 
 
 def add_worker_options(p, what):
-    """Adds the options --jobs, --dask, --time-limit and --cpu-limit of a command that works on
-    several `what` at a time."""
+    """Adds the options --jobs, --dask and --time-limit of a command that works on several `what`
+    at a time."""
     p.add_argument("--jobs", type=whole_number(1), metavar="N",
                    help="work on N %s at a time (default: one per core)" % what)
     p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
                    help="stop after about this time on the clock; -r continues")
-    p.add_argument("--cpu-limit", type=seconds, default=math.inf, metavar="SECONDS",
-                   help="stop after about this time of this process's processors")
 
 
 TOGETHER = "a, b and c move together along the segment from all lower to all upper ends"
@@ -148,8 +146,8 @@ class ProgressLine:
 
     length = 0                          # of the line that is on the terminal now, whoever wrote it
 
-    def __init__(self, command="converse", wanted=True):
-        self.command, self.wanted, self.shown = command, wanted, wanted and sys.stderr.isatty()
+    def __init__(self, command="converse"):
+        self.command, self.shown = command, sys.stderr.isatty()
         self.began = time.monotonic()
         self.due = 0.0 if self.shown else self.began + LINE_SECONDS
 
@@ -162,7 +160,7 @@ class ProgressLine:
     def __call__(self, words):
         """Shows the time that passed and the text words(), which is called only when it is due."""
         now = time.monotonic()
-        if self.wanted and now >= self.due:
+        if now >= self.due:
             self.due = now + (REFRESH_SECONDS if self.shown else LINE_SECONDS)
             passed = int(now - self.began)
             text = "%d:%02d:%02d %s" % (passed // 3600, passed // 60 % 60, passed % 60, words())

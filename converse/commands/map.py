@@ -111,8 +111,7 @@ def _search(options, kept):
             say(text + "\n")
 
         return explore(family, path=kept, resume=options.restore is not None, jobs=options.jobs,
-                       executor=executor, time_limit=options.time_limit,
-                       cpu_limit=options.cpu_limit, tell=tell,
+                       executor=executor, time_limit=options.time_limit, tell=tell,
                        progress=lambda diagram: line(lambda: progress_text(diagram)), **given)
 
 

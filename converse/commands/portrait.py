@@ -71,7 +71,6 @@ def run(options):
                         depth=options.depth or DEPTH, strips=not options.lines,
                         resume=options.restore is not None, jobs=options.jobs,
                         executor=executor, time_limit=options.time_limit,
-                        cpu_limit=options.cpu_limit,
                         progress=lambda *done: line(lambda: progress_text(*done)))
     say(found.report(path or ""))
     if options.graphics is not None:

@@ -29,7 +29,6 @@ ENDING = ending(
         (2, "bad usage, input or file; the result could not be saved; or the workers are gone"),
         (3, "a theorem for a part of the torus only"),
         (4, "as printed in the thesis, not a proof"), SIGNALS))
-LEAF_WORDS = {"P": "proved", "S": "symmetric", "U": "undecided"}
 
 
 class ListInputs(argparse.Action):
@@ -66,8 +65,6 @@ def parser():
     p.add_argument("-g", "--graphics", metavar="FILE",
                    help="draw the prisms in FILE: SVG, PNG, PDF or PostScript (.ps, .eps) by its "
                         "name; 'off': no figure (default)")
-    p.add_argument("-t", "--verbose", action="store_true",
-                   help="print a line for every decided prism")
     for each in fields(Settings):
         how = {key: value for key, value in each.metadata.items()
                if key in ("help", "metavar", "choices")}
@@ -86,14 +83,6 @@ def parser():
     p.add_argument("--list-inputs", action=ListInputs, nargs=0,
                    help="print the paths of the input files that come with the program, and exit")
     return p
-
-
-def _leaf_line(leaf, points):
-    """A line of -t: kind, centre and half-widths in radians, cuts, steps."""
-    centre, half = (", ".join("%.10g" % (x * math.pi) for x in each)
-                    for each in (leaf.centre, leaf.half))
-    return "%-9s (%s) +- (%s), %d cuts, %d steps" % (
-        LEAF_WORDS.get(leaf.kind, "linked"), centre, half, leaf.depth, points)
 
 
 class Progress:
@@ -147,9 +136,6 @@ def run(options):
         files.check_writable(options.backup, regular=True)
         files.check_new(options.backup, options.restore)
 
-    def on_leaf(leaf, points):
-        say(_leaf_line(leaf, points) + "\n")
-
     problem = None
     if options.restore is None:
         problem = read_problem(options.input, together=options.together)
@@ -158,13 +144,12 @@ def run(options):
     elif options.input or options.together:
         raise ConverseError("-r continues a run as it was asked for; leave out the input and "
                             "--together")
-    with ProgressLine(wanted=not options.verbose) as line, executor_of(options) as executor:
+    with ProgressLine() as line, executor_of(options) as executor:
         progress = Progress(options, line)
         proof = prove(problem, xstar=options.xstar, jobs=options.jobs, executor=executor,
                       backup=options.backup, resume=options.restore,
-                      time_limit=options.time_limit, cpu_limit=options.cpu_limit,
-                      on_begin=progress.begin,
-                      progress=progress, on_leaf=on_leaf if options.verbose else None, **given)
+                      time_limit=options.time_limit, on_begin=progress.begin,
+                      progress=progress, **given)
         if not options.begun:           # the time limit came before the search
             progress(0.0, proof.counts)
     say(verdict(proof, options.backup or options.restore or ""))

@@ -80,7 +80,7 @@ class Growth:
             1, self.stop, points=points)) or self.stop()
         if self.stopped:
             return None
-        grown = search.view(True, True)
+        grown = search.view(True)
         self.spent = int(grown.points)
         self.points += self.spent + TREE_POINTS
         if grown.cells or grown.counts.undecided and not stubborn:
@@ -125,7 +125,7 @@ def linked(growth: Growth, problem: Problem, xstars: Sequence[Point], points: fl
             return None, used
         targets.append(replace(part[0], letter=tree.LETTERS[len(parts)]))
         parts.append(part[1])
-    text, _ = linked_tree(problem, grown.text, grown.steps, targets)
+    text = linked_tree(problem, grown.text, targets)
     if "U" in text or any(target.letter not in text for target in targets):
         return None, used
     proof = prove(resume=replace(before, trees=(replace(before.trees[0], text=text), *parts)),

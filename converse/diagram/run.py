@@ -22,7 +22,6 @@ BUDGET = 300                            # seconds of one core, about
 def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = None,
             resume: bool = False, budget: Number = BUDGET, jobs: Optional[int] = None,
             executor: Optional[concurrent.futures.Executor] = None, time_limit: float = math.inf,
-            cpu_limit: float = math.inf,
             tell: Optional[Callable[[str], None]] = None,
             progress: Optional[Callable[[Diagram], None]] = None) -> Diagram:
     """Looks for proofs along one or two parameters of a family of maps.
@@ -43,9 +42,8 @@ def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = No
     jobs, executor
         The number of tasks at a time, by default one per core; the executor that works on them, by
         default threads of this process.  The result does not depend on them.
-    time_limit, cpu_limit
-        The search ends after about this number of seconds on the clock, or of this process's
-        processors.
+    time_limit
+        The search ends after about this number of seconds on the clock.
     tell
         tell(text) is called with a line about each proof as soon as it is found.
     progress
@@ -62,7 +60,7 @@ def explore(family: Optional[SymplecticMap] = None, *, path: Optional[Path] = No
     ConverseError, MemoryError
         The run ended; what was proved is in the file.
     """
-    pool = WorkerPool(executor, jobs, time_limit, cpu_limit)
+    pool = WorkerPool(executor, jobs, time_limit)
     seconds = exact(budget)
     if seconds <= 0:
         raise ValueError("the budget is a number of seconds above 0, not %s" % (budget,))

@@ -319,11 +319,10 @@ def wrong_letter(problem: Problem, largest: Fraction, xstar: Point, text: str,
                      boxes[targets[kind].shifts](cell), targets[kind].region)), None)
 
 
-def linked_tree(problem: Problem, text: str, steps: List[int],
-                targets: List[Target]) -> Tuple[str, List[int]]:
-    """The tree with links, and the steps of its nodes.  A node above undecided cells becomes a
-    letter if its whole box is linked to that part; nodes near the root are tried first.  Cells
-    that cannot be linked stay undecided."""
+def linked_tree(problem: Problem, text: str, targets: List[Target]) -> str:
+    """The tree with links.  A node above undecided cells becomes a letter if its whole box is
+    linked to that part; nodes near the root are tried first.  Cells that cannot be linked stay
+    undecided."""
     size = len(text)
     end, open_ = [0] * size, [False] * size     # of each node: where the next begins; anything U
     for i in range(size - 1, -1, -1):
@@ -332,7 +331,7 @@ def linked_tree(problem: Problem, text: str, steps: List[int],
             end[i], open_[i] = end[other], open_[i + 1] or open_[other]
         else:
             end[i], open_[i] = i + 1, text[i] == "U"
-    nodes, kept = [], []
+    nodes = []
     boxes = {target.shifts: _boxes(problem, target.shifts) for target in targets}
     walk, i = tree.Walk(), 0
     while i < size:
@@ -344,6 +343,5 @@ def linked_tree(problem: Problem, text: str, steps: List[int],
         for _ in walk.feed(node):
             pass
         nodes.append(node)
-        kept.append(steps[i] if node == text[i] else 0)
         i = i + 1 if node == text[i] else end[i]
-    return "".join(nodes), kept
+    return "".join(nodes)

@@ -161,7 +161,7 @@ class Grown:
     """A part of a tree: nodes, and the cells that follow them, which are yet to be decided.
 
     text: the nodes in preorder.
-    steps: the lengths of their orbits, if wanted.
+    steps: the lengths of their orbits, if this is what one search has grown.
     counts: their statistics.
     cells: in preorder, each (index, cuts, hint): see cv_cell in csrc/converse.h.
     examined: the share of parameters and angles that lies in its leaves.
@@ -180,8 +180,7 @@ class Grown:
 
     def followed_by(self, other: "Grown") -> "Grown":
         """The part that this one, whose cells were decided or none, is together with the next."""
-        return Grown(self.text + other.text, self.steps + other.steps, self.counts + other.counts,
-                     other.cells)
+        return Grown(self.text + other.text, [], self.counts + other.counts, other.cells)
 
 
 def native_text(text, owners):
@@ -331,14 +330,14 @@ class Search:
         finally:
             lib.cv_halt(self.handle)
 
-    def view(self, whole=False, steps=False):
+    def view(self, whole=False):
         """What has been grown by now; without its text and cells, unless it is wanted whole."""
         view = ffi.gc(ffi.new("cv_view *"), lib.cv_forget_view)
         check(lib.cv_look(self.handle, whole, view))
         nodes = view.length
         return Grown(
             self._letters(ffi.unpack(view.tree, nodes).decode("ascii")) if nodes else "",
-            ffi.unpack(view.steps, nodes) if nodes and steps else [], _counts(view.counts),
+            ffi.unpack(view.steps, nodes) if nodes else [], _counts(view.counts),
             [(self._axes(cell.index), self._axes(cell.cuts), cell.hint) for cell in
              (view.cells[n] for n in range(view.n_cells))],
             view.examined, bool(view.finished), bool(view.needs_long), view.points)
@@ -348,7 +347,7 @@ class Search:
         if cells is not None:
             self.restart(cells)
         self.work(threads, look, leaves, points)
-        return self.view(True, True)
+        return self.view(True)
 
 
 def _counts(counts):
@@ -375,4 +374,4 @@ def grow(task, leaves=MANY, points=math.inf, threads=1, look=bool):
     search = Search(task)
     if not (search.work(0, look) and search.work(threads, look, leaves, points)):
         return None
-    return search.view(True, True)
+    return search.view(True)

@@ -299,7 +299,7 @@ def _even(problem):
 def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optional[Path] = None,
             columns: int = 600, depth: int = 15, strips: bool = True, resume: bool = False,
             jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
-            time_limit: float = math.inf, cpu_limit: float = math.inf,
+            time_limit: float = math.inf,
             progress: Optional[Callable[[int, Portrait], None]] = None) -> Portrait:
     """Proves where in phase space a map of one angle has no rotational invariant circles.
 
@@ -321,9 +321,8 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
         Whether to continue the portrait of the file: its columns are kept.
     jobs, executor
         Columns at a time, by default one per core; whose workers they are, by default threads.
-    time_limit, cpu_limit
-        The search ends after about this number of seconds on the clock, or of this process's
-        processors.
+    time_limit
+        The search ends after about this number of seconds on the clock.
     progress
         progress(columns done, portrait) is called a few times a second.
 
@@ -334,7 +333,7 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
     ConverseError
         The file cannot be used; what was found is in it.
     """
-    pool = WorkerPool(executor, jobs, time_limit, cpu_limit)
+    pool = WorkerPool(executor, jobs, time_limit)
     asked = None if source is None else Portrait.new(Problem.of(source), columns, depth, strips)
     with interruptible(), Backup(path, resumed=path if resume else None) as backup:
         if path is not None and resume and asked is None:

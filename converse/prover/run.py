@@ -23,7 +23,7 @@ from .orbit_length import longest
 from .proof import Proof, Tree
 from .resume import continued, counted
 from .settings import LENGTH, MAY_CHANGE, SETTINGS, Settings
-from .shared import OLD, Growth, Shared
+from .shared import Growth, Shared
 from .starts import MAX_PROOF_LEAVES, has_width, plan
 from .workers import WorkerPool, count_workers
 
@@ -31,19 +31,18 @@ LONG = 400                              # points: of a proved prism's orbit
 # Decided prisms, after which it is asked whether thin prisms resist: with waves of one combination
 # of the angles most proofs are finished then.
 MANY_LEAVES = 5000
-# Threads of this process work for this time, and so many times as long as the setting up took,
-# before the work is handed to an executor: each of its workers sets the search up anew.
-ALONE_SECONDS, ALONE_RATIO = 0.1, 10
+# Threads of this process decide these before the work is handed to an executor, each of whose
+# workers sets the search up anew.
+ALONE_LEAVES = 1000
 
 
 def prove(source: Union[SymplecticMap, Problem, None] = None, *,
           xstar: Optional[Sequence[Number]] = None,
           jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
           backup: Optional[Path] = None, resume: Union[Proof, Path, None] = None,
-          time_limit: float = math.inf, cpu_limit: float = math.inf,
+          time_limit: float = math.inf,
           on_begin: Optional[Callable[[Proof], None]] = None,
-          progress: Optional[Callable[[float, Counts], None]] = None,
-          on_leaf: Optional[Callable[[tree.Leaf, int], None]] = None, **settings: Any) -> Proof:
+          progress: Optional[Callable[[float, Counts], None]] = None, **settings: Any) -> Proof:
     """Tries to prove that a map, or a family of maps, has no invariant tori.
 
     Parameters
@@ -65,18 +64,14 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
         An unfinished proof, or its file, to continue with its map and its settings; `depth` may
         be greater, and `stubborn` differ.  A file is also kept up to date, unless `backup` names
         another.
-    time_limit, cpu_limit : float
-        Seconds of this run, on the clock or of this process's processors, after which, about, the
-        search is left as it is.
+    time_limit : float
+        Seconds of this run, on the clock, after which, about, the search is left as it is.
     on_begin : callable, optional
         on_begin(proof) is called once, with the proof as it is before the search.
     progress : callable, optional
         progress(examined, counts) is called a few times a second.  `examined`, from 0 to 1, is the
         share of parameters and angles in prisms that are proved, skipped or given up.  It never
         falls.
-    on_leaf : callable, optional
-        on_leaf(leaf, points) is called for every leaf that this run decides, in preorder; `points`
-        is the length of its orbit.
     settings : optional
         Those of Settings, by name: method, depth, digits, stubborn, as_printed.  None is no choice.
         `digits` and `as_printed`, which only the thesis's method has, choose it.
@@ -103,7 +98,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
         raise TypeError("prove() has no argument %s; the settings are %s"
                         % (min(unknown), ", ".join(SETTINGS)))
     given = {name: value for name, value in settings.items() if value is not None}
-    pool = WorkerPool(executor, jobs, time_limit, cpu_limit)
+    pool = WorkerPool(executor, jobs, time_limit)
     file = None if resume is None or isinstance(resume, Proof) else resume
     name = "the proof to resume" if file is None else os.fspath(file)
     if resume is not None:
@@ -124,7 +119,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
         if on_begin is not None:
             on_begin(before)
         try:
-            return _Run(before, backup_file, pool, progress, on_leaf).run()
+            return _Run(before, backup_file, pool, progress).run()
         except native.WrongTree as error:
             raise ConverseError("%s: %s; use an intact copy or start anew"
                                 % (name, error)) from None
@@ -159,11 +154,11 @@ class _Run:
     The trees are grown one after the other.  Where a tree leaves prisms undecided, further ones are
     added to the list."""
 
-    def __init__(self, before, backup, pool, progress, on_leaf):
+    def __init__(self, before, backup, pool, progress):
         self.proof, self.backup = replace(before, hopeless=False), backup
         self.pool, self.threads = pool, pool.here and pool.jobs or count_workers()
-        self.progress, self.on_leaf = progress, on_leaf
-        self.began, self.seconds_before = time.monotonic(), before.seconds
+        self.progress, self.began = progress, time.monotonic()
+        self.seconds_before = before.seconds
         self.examined = self.share = 0.0    # before the tree that is grown now; of all, told last
         self.number, self.search = 0, None      # of that tree, and its search
         self.counts = before.counts             # when that began
@@ -200,14 +195,13 @@ class _Run:
         problem, text = self._tree.problem, self._tree.text
         task = Task(problem, self.proof.settings, self._tree.xstar,
                     -native.ORDINARY if self.longest is None else self.longest)
-        began, search = time.monotonic(), native.Search(task)
+        search = native.Search(task)
         if self._is_late() or not search.work(0, self._is_late):    # no time even to set it up
             return False
         counts = self.counts = self.proof.counts
         if self.proof.parts:
             counts = replace(counts, **dict(zip(tree.NODES, tree.count(text))))
-        growth = Growth(search, self.proof.settings, text, self._tree.pending,
-                        self.on_leaf is not None)
+        growth = Growth(search, self.proof.settings, text, self._tree.pending)
         if any(getattr(counts, name) != n for name, n in zip(tree.NODES, tree.count(text))):
             raise native.WrongTree()
         self.counts_before = counts
@@ -220,12 +214,15 @@ class _Run:
             raise native.WrongTree("a leaf that is linked to part %s may lead out of its region"
                                    % wrong)
         self.search = growth
-        self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
-        setting_up, left = time.monotonic() - began, MANY_LEAVES - counts.decided
+        left = MANY_LEAVES - counts.decided
         if self.may_be_long and left > 0 and not self._look():  # what is asked then is asked there,
             self.search.work(self.threads, self._look, left)    # whenever this looks
         if not self.pool.here:
-            self._hand_over(replace(task, xstar=search.xstar), setting_up)
+            if not self._look():
+                self.search.work(self.threads, self._look, ALONE_LEAVES)
+            if not self._look():        # it is not soon finished
+                self.search = Shared(replace(task, xstar=search.xstar), self.search.pieces(),
+                                     self.pool)
         if not self._look():
             self.search.work(self.threads, self._look)
             self._look()
@@ -234,21 +231,6 @@ class _Run:
         if doubtful and not ended:
             return self._knows_longest() and self._grow()
         return ended
-
-    def _hand_over(self, task, setting_up):
-        """Hands the tree that is grown to the workers of the executor, if it is not soon finished.
-
-        setting_up: its duration in seconds."""
-        alone = time.monotonic() + ALONE_SECONDS + ALONE_RATIO * setting_up
-
-        def look():
-            return self._look() or time.monotonic() >= alone
-
-        if not look():
-            self.search.work(self.threads, look)
-        if not self._look():
-            self.search = Shared(task, self.search.pieces(), self.pool, setting_up,
-                                 self.on_leaf is not None)
 
     def _is_late(self):
         return self._seconds_left() <= 0
@@ -344,8 +326,6 @@ class _Run:
         counts = self.counts if self.number else Counts()       # without what was in vain
         self.proof = replace(proof, trees=proof.trees + tuple(found.parts),
                              counts=counts + found.counts)
-        self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
-        self._tell(found.tree, found.steps)
         return True
 
     # ---- what is told
@@ -366,10 +346,6 @@ class _Run:
     def _look(self):
         """Tells whoever wants to know how far things are.  Returns whether the work is to end."""
         self.view = self.search.view()
-        if self.on_leaf:
-            known, seen = self.search.pieces()[0], self.seen
-            self.seen = len(known.text)
-            self._tell(known.text[seen:], known.steps[seen:])
         if self.progress:
             left = len(self.proof.trees) - self.number
             self.share = max(self.share, self.examined
@@ -377,13 +353,6 @@ class _Run:
             self._show(self.share, self.counts_before + self.view.counts)
         self.backup.update(self._snapshot)
         return self._is_ended() or self._is_doubtful() or self._is_late()
-
-    def _tell(self, text, steps):
-        for node, points in zip(text if self.on_leaf else "", steps):
-            for kind, cell in self.walk.feed(node):
-                if points != OLD:
-                    leaf = tree.Leaf(kind, *self.prism(cell), sum(cell[1]))
-                    self.on_leaf(leaf, points)
 
     def _snapshot(self):
         """The proof as it stands."""

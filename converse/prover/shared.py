@@ -15,7 +15,6 @@ from .native import Counts, Grown
 TASK_SECONDS = 1.0                  # A task takes this time at most, and
 TASK_RATIO = 10                     # ten times as long as each worker's setting up.
 PIECE = re.compile(r"[^?]+\?*|\?+")     # nodes, and the untried prisms that follow them
-OLD = -1                            # The orbit's length of a node that was taken up.
 
 
 class View(NamedTuple):
@@ -45,7 +44,7 @@ def settled(pieces, stubborn):
     for piece in pieces:
         end = -1 if stubborn else piece.text.find("U")
         if end >= 0:
-            piece = replace(piece, text=piece.text[:end + 1], steps=piece.steps[:end + 1], cells=[])
+            piece = replace(piece, text=piece.text[:end + 1], cells=[])
         if first.cells or rest:
             rest.append(piece)
         else:
@@ -80,11 +79,9 @@ def taken_up(search, depth, text, hints):
 class Growth:
     """A tree that was begun and that threads of this process grow: it takes over a search."""
 
-    def __init__(self, search, settings, text, hints, want_steps=False):
-        self.search, self.stubborn, self.want_steps = search, settings.stubborn, want_steps
+    def __init__(self, search, settings, text, hints):
+        self.search, self.stubborn = search, settings.stubborn
         self.begun = settled(taken_up(search, settings.depth, text, hints), self.stubborn)
-        if want_steps:
-            self.begun = [replace(piece, steps=[OLD] * len(piece.text)) for piece in self.begun]
         self.cells = [cell for piece in self.begun for cell in piece.cells]
         search.restart(self.cells)
 
@@ -101,7 +98,7 @@ class Growth:
     def pieces(self):
         """The tree as it is: pieces that follow each other, the first of which is all that is
         settled, and the cells after it."""
-        grown, pieces, at = self.search.view(True, self.want_steps), [], 0
+        grown, pieces, at = self.search.view(True), [], 0
         cells = iter(grown.cells)
         for piece in self.begun:
             begin, left = at, len(piece.cells)      # to be decided
@@ -111,7 +108,7 @@ class Growth:
                 left += 1 if grown.text[at] in tree.CUTS else -1
                 at += 1
             pieces.append(piece.followed_by(Grown(
-                grown.text[begin:at], grown.steps[begin:at], cells=list(islice(cells, left)))))
+                grown.text[begin:at], cells=list(islice(cells, left)))))
         pieces[0] = replace(pieces[0], counts=grown.counts)
         return settled(pieces, self.stubborn)
 
@@ -120,10 +117,8 @@ class Shared:
     """A tree whose pieces are given to the workers of an executor.  The list of pieces is replaced
     and never changed, so that it is whole whenever an exception comes."""
 
-    def __init__(self, task, pieces, pool, seconds, want_steps):
-        """seconds: of the setting up."""
-        self.task, self.pool, self.want_steps = task, pool, want_steps
-        self.seconds = max(TASK_SECONDS, TASK_RATIO * seconds)
+    def __init__(self, task, pieces, pool):
+        self.task, self.pool = task, pool
         self.needs_long = False         # may a prism need longer orbits than the task allows?
         self.known = pieces
 
@@ -147,7 +142,7 @@ class Shared:
         """The first cells on which nobody works.  The pieces that wait are divided before, until
         there are as many as tasks are wanted, if possible: the last cell of a piece is the largest,
         since it was cut least."""
-        busy = {id(cells) for _, cells, *_ in self.pool.running.values()}
+        busy = {id(cells) for cells in self.pool.running.values()}
         waiting = [piece for piece in self.known if piece.cells and id(piece.cells) not in busy]
         while waiting and len(waiting) < self.pool.size - len(busy):
             piece = max(waiting, key=lambda piece: len(piece.cells))
@@ -157,8 +152,8 @@ class Shared:
             self._replace(piece.cells, halves)
             at = waiting.index(piece)
             waiting[at:at + 1] = halves
-        return (waiting[0].cells, grow, self.task, waiting[0].cells, self.seconds,
-                self.want_steps) if waiting else None
+        return (waiting[0].cells, grow, self.task, waiting[0].cells, TASK_SECONDS,
+                TASK_RATIO) if waiting else None
 
     def _take(self, cells, grown):
         for piece in self.known:
@@ -173,10 +168,10 @@ class Shared:
         self.known = [*self.known[:at], *pieces, *self.known[at + 1:]]
 
 
-def grow(task, cells, seconds, want_steps):
+def grow(task, cells, seconds, ratio):
     """What cells become in some seconds.  A worker calls it."""
-    search = native.Search(task)
+    began, search = time.monotonic(), native.Search(task)
     search.work(0, bool)
-    end = time.monotonic() + seconds
-    grown = search.grow(cells, look=lambda: time.monotonic() >= end)
-    return grown if want_steps else replace(grown, steps=[])
+    now = time.monotonic()
+    end = now + max(seconds, ratio * (now - began))
+    return search.grow(cells, look=lambda: time.monotonic() >= end)

@@ -42,11 +42,10 @@ MAX_PARTS = 26                          # a letter each
 
 @dataclass
 class Plan:
-    """The tree over a starting point with its links: the text, the lengths of its nodes' orbits,
-    the statistics of the search, and the new parts."""
+    """The tree over a starting point with its links: the text, the statistics
+    of the search, and the new parts."""
 
     tree: str
-    steps: List[int]
     counts: native.Counts
     parts: List[Tree]
 
@@ -78,11 +77,11 @@ def plan(problem, depth, xstar, undecided, largest, before, longest, threads, is
                                   with_image(part, _text(best)), shifts))
             parts.append(Tree(part, _text(best)))
             points += [best] if best not in points else []
-    text, steps = linked_tree(problem, grown.text, grown.steps, targets)
+    text = linked_tree(problem, grown.text, targets)
     used = [target.letter in text for target in targets]    # one region may do for two clusters
     names = zip(compress((ord(target.letter) for target in targets), used), tree.LETTERS[before:])
     text = text.translate(dict(names)).replace("U", tree.UNTRIED)
-    return Plan(text, steps, grown.counts, list(compress(parts, used))) if any(used) else None
+    return Plan(text, grown.counts, list(compress(parts, used))) if any(used) else None
 
 
 def _look(problem, depth, xstar, survey):

@@ -1,8 +1,8 @@
 """Tasks for the workers of an executor: threads of this process, or somebody else's anywhere.
 
-concurrent.futures hands out calls.  This module adds what runs of hours need: a task whose worker
-dies is given to another, workers may join and leave (Dask), and no signal strikes in a lock.  A
-task is a column, a cell of a map, or a list of prisms that are to be decided."""
+concurrent.futures hands out calls, and Dask gives the task of a worker that died to another one.
+This module adds what runs of hours need: workers may join and leave (Dask), and no signal strikes
+in a lock.  A task is a column, a cell of a map, or a list of prisms that are to be decided."""
 
 import concurrent.futures
 import contextlib
@@ -20,7 +20,6 @@ from ..storage.signals import Resource, postponed
 from ..version import __version__
 
 LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
-ATTEMPTS = 4                        # at a task whose workers die
 ASK_SECONDS = 1.0                   # between two questions to a Dask scheduler
 # Evaluated by a worker of an executor, on which the package may be missing.
 ANSWER = "__import__('converse.prover.workers', fromlist='*').answer(release, task)"
@@ -42,26 +41,24 @@ class WorkerPool(Resource):
     begins now.
 
     executor: a concurrent.futures.Executor or None; jobs: tasks at a time, or None: as many as keep
-    the workers busy, which with a Dask cluster may come and go; time_limit, cpu_limit: seconds on
-    the clock, and of this process's processors.  TypeError, ValueError: one of these is wrong.
+    the workers busy, which with a Dask cluster may come and go; time_limit: seconds on the clock.
+    TypeError, ValueError: one of these is wrong.
     The tasks of threads of this process have as their last argument a function that tells whether
     to stop; other processes cannot be told."""
 
-    def __init__(self, executor=None, jobs=None, time_limit=math.inf, cpu_limit=math.inf):
+    def __init__(self, executor=None, jobs=None, time_limit=math.inf):
         if jobs is not None:
             whole_number(jobs, "jobs", 1)
         if executor is not None and not hasattr(executor, "submit"):
             raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
-        for name, limit in ("time_limit", time_limit), ("cpu_limit", cpu_limit):
-            if isinstance(limit, bool) or not isinstance(limit, (int, float)) or not limit >= 0:
-                raise ValueError("%s is a number of seconds, not %r" % (name, limit))
-        self.end, self.cpu_end = time.monotonic() + time_limit, time.process_time() + cpu_limit
-        self.jobs, self.here = jobs, executor is None
+        if isinstance(time_limit, bool) or not isinstance(time_limit, (int, float)) or \
+                not time_limit >= 0:
+            raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
+        self.end, self.jobs, self.here = time.monotonic() + time_limit, jobs, executor is None
         self.executor = executor or concurrent.futures.ThreadPoolExecutor(jobs or count_workers())
         self.client = getattr(executor, "_client", None)        # of Dask
         self.due, self.cores, self.waiting = 0.0, 0, ""         # of _ask
-        # By future the attempts that are left at its task, this one included, and (key, call,
-        # *arguments): by the key who gave it recognises the result.
+        # By future the key of its task, by which who gave it recognises the result.
         self.running, self.stop = {}, threading.Event()
 
     def acquire(self):
@@ -80,8 +77,8 @@ class WorkerPool(Resource):
         self.running.clear()
 
     def seconds_left(self):
-        """Until the limit that comes first; 0 or less: none."""
-        return min(self.end - time.monotonic(), self.cpu_end - time.process_time())
+        """Until the limit; 0 or less: none."""
+        return self.end - time.monotonic()
 
     # ---- tasks
 
@@ -92,7 +89,7 @@ class WorkerPool(Resource):
         while task or self.running:
             size = self.size
             while task and len(self.running) <= size:           # one task waits for a worker
-                self._submit(ATTEMPTS, *task)
+                self._submit(*task)
                 task = next_task()
             for key, result in self._take():
                 take(key, result)
@@ -101,13 +98,13 @@ class WorkerPool(Resource):
                 break
             task = task or next_task()
 
-    def _submit(self, attempts, key, *task):
+    def _submit(self, key, *task):
         """WorkersGone: nobody takes the task; MemoryError: memory lacks for another thread."""
         given = (*task, self.stop.is_set) if self.here else (
             eval, ANSWER, {"release": __version__, "task": pickle.dumps(task)})
         try:
             with postponed():
-                self.running[self.executor.submit(*given)] = attempts, key, *task
+                self.running[self.executor.submit(*given)] = key
         except Exception as error:
             if not self.here:
                 raise self._gone(error) from None
@@ -117,22 +114,18 @@ class WorkerPool(Resource):
 
     def _take(self):
         """Yields (key, result) of tasks that are done, as soon as one is; waits for LOOK_SECONDS at
-        most.  A task whose worker died is handed out again.  WorkersGone: they die again and again;
-        an exception of this program, missing memory, and whatever a thread of this process raised
-        is passed on."""
+        most.  WorkersGone: one failed; an exception of this program, missing memory, and whatever a
+        thread of this process raised is passed on."""
         with postponed():
             done = concurrent.futures.wait(self.running, LOOK_SECONDS,
                                            concurrent.futures.FIRST_COMPLETED)[0]
         for future in done:
-            attempts, key, *task = self.running.pop(future)
             try:
                 with postponed():
                     result = future.result()
             except Exception as error:
-                self._failed(error, attempts)
-                self._submit(attempts - 1, key, *task)
-            else:
-                yield key, result
+                raise self._failed(error) from None
+            yield self.running.pop(future), result
 
     # ---- workers
 
@@ -159,20 +152,18 @@ class WorkerPool(Resource):
 
     def _gone(self, error=None):
         """The exception to raise where no task can be given to the workers."""
-        return WorkersGone("the workers are gone (%s)" % error if self.alive
-                           else "the Dask scheduler is gone")
+        lost = not self.alive or isinstance(error, concurrent.futures.CancelledError)
+        return WorkersGone("the Dask scheduler is gone" if lost else "the workers are gone (%s)"
+                           % " ".join(str(error).split()).partition(". ")[0])
 
-    def _failed(self, error, attempts):
-        """Raises what a failure of a task means; returns if the task may be tried again."""
+    def _failed(self, error):
+        """The exception to raise where a task failed."""
         if self.here or isinstance(error, (ConverseError, MemoryError)):
-            raise error
-        self.check()
-        words = " ".join(str(error).split()).partition(". ")[0]
+            return error
         if isinstance(error, (ImportError, AttributeError)):
-            raise WorkersGone("a worker has no converse %s (%s); install converse-kam %s where the "
-                              "workers run" % (__version__, words, __version__))
-        if attempts <= 1:
-            raise WorkersGone("the workers keep failing (%s: %s)" % (type(error).__name__, words))
+            return WorkersGone("a worker has no converse %s (%s); install converse-kam %s where "
+                               "the workers run" % (__version__, error, __version__))
+        return self._gone(error)
 
     def _ask(self):
         """Asks a Dask cluster for its workers."""

@@ -6,7 +6,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 
 import pytest
 from conftest import COMMAND
@@ -87,20 +86,6 @@ def test_precision(run, sample):
     assert "Arithmetic : 50 decimal places" in run("-p", "50", sample)[1]
 
 
-def test_verbose(run, sample, output):
-    status, out, err = run("-t", sample)
-    assert status == 0 and err == ""
-    leaf = re.compile(r"(proved|symmetric|undecided) +\(\S+, \S+\) \+- \(\S+, \S+\), "
-                      r"[0-9]+ cuts, [0-9]+ steps")
-    lines = out.split("\n")
-    found = [line for line in lines if leaf.fullmatch(line)]
-    assert timeless("\n".join(line for line in lines if line not in found)) == output
-    proved = sum(line.startswith("proved") for line in found)
-    assert "Of the %d successful prisms" % proved in out and len(found) > proved
-    assert lines[lines.index("+" * 48) + 1] == found[0]
-    assert run("--verbose", sample)[1].count(" cuts, ") == len(found)
-
-
 def test_as_printed(run, sample):
     status, out, err = run("--as-printed", sample)
     assert status == 4
@@ -113,8 +98,8 @@ def test_as_printed(run, sample):
 def test_help_and_version(run):
     status, out, err = run("--help")
     assert status == 0 and err == ""
-    for flag in ("-d", "-b", "-r", "-g", "-p", "-s", "-t", "--as-printed", "--depth", "--backup",
-                 "--restore", "--graphics", "--precision", "--stubborn", "--verbose", "--version"):
+    for flag in ("-d", "-b", "-r", "-g", "-p", "-s", "--as-printed", "--depth", "--backup",
+                 "--restore", "--graphics", "--precision", "--stubborn", "--version"):
         assert flag in out
     assert run("--version") == (0, "converse %s\n" % __version__, "")
 
@@ -211,9 +196,6 @@ def test_the_sharper_method(run, root, tmp_path):
     picture = tmp_path / "a.svg"
     assert run("--method=loewner", "--together", "-g", picture, sample)[0] == 0
     assert b"<svg" in picture.read_bytes()[:1000]
-    leaves = run("--method=loewner", "--together", "-t", sample)[1]
-    assert leaves.count("proved  ") == int(
-        re.search(r"([0-9,]+) prisms proved", out)[1].replace(",", ""))
 
 
 # ---- bad usage and bad input ------------------------------------------------------------
@@ -407,23 +389,13 @@ def test_a_potential_needs_the_sharper_method(run, root, arguments, words):
 
 
 def test_without_a_terminal_a_line_a_minute_tells_the_progress(run, sample, monkeypatch):
-    """Each with the name of the command; none in a run of less than a minute, or beside -t."""
+    """Each with the name of the command; none in a run of less than a minute."""
     assert run(sample)[2] == ""
     monkeypatch.setattr(common, "LINE_SECONDS", 0.0)
     lines = run(sample)[2].splitlines()
-    assert len(lines) > 1 and run("-t", sample)[2] == ""
+    assert len(lines) > 1
     for line in lines:
         assert re.match(r"converse: 0:\d\d:\d\d [\d,]+ prisms proved, .* x torus done", line)
-
-
-def test_a_limit_of_processor_time(run, root, monkeypatch):
-    """The clock, which is faster on a machine that is shared, does not count."""
-    began = time.process_time()
-    status, out, _ = run("--cpu-limit", "0.5", "--jobs", "1", root / "inputs" / "standard-9717.in",
-                         "--method", "loewner")
-    assert status == 1 and "\nEnded      before the whole region was examined" in out
-    assert 0.4 < time.process_time() - began < 5
-    assert run("--cpu-limit", "x", root / "inputs" / "trig274.in")[0] == 2
 
 
 def test_the_default_method_is_one_that_can(run, root):

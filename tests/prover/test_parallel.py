@@ -41,8 +41,7 @@ LONG = line("0.01405", "0.0149")            # a third of a second, 27,696 leaves
 def early(monkeypatch):
     """Hands the work to an executor from the beginning, in smaller tasks than usual."""
     monkeypatch.setattr(native, "LOOK_SECONDS", 0.005)
-    monkeypatch.setattr(run, "ALONE_SECONDS", 0.0)
-    monkeypatch.setattr(run, "ALONE_RATIO", 0)
+    monkeypatch.setattr(run, "ALONE_LEAVES", 0)
     monkeypatch.setattr(shared, "TASK_SECONDS", 0.02)
     monkeypatch.setattr(shared, "TASK_RATIO", 0)
 
@@ -97,37 +96,16 @@ def test_processes(proof):
         assert timeless(prove(LONG, method="loewner", executor=executor)) == proof
 
 
-class Unreliable(concurrent.futures.ThreadPoolExecutor):
-    """Every third task is lost with its worker, but none a second time."""
-
-    def __init__(self, workers):
-        super().__init__(workers)
-        self.tasks, self.lost = 0, []
-
-    def submit(self, work, *task):
-        self.tasks += 1
-        if self.tasks % 3 == 0 and task not in self.lost:
-            self.lost.append(task)
-            work = die
-        return super().submit(work, *task)
-
-
 def die(*args):
     raise OSError("the worker died")
 
 
-def test_lost_tasks_are_given_out_again(proof):
-    with Unreliable(2) as executor:
-        assert timeless(prove(LONG, method="loewner", executor=executor)) == proof
-        assert executor.lost
-
-
-def test_workers_that_always_die():
+def test_workers_that_die():
     class Dead(concurrent.futures.ThreadPoolExecutor):
         def submit(self, work, *args):
             return super().submit(die)
 
-    with Dead(2) as executor, pytest.raises(ConverseError, match="keep failing.*died"):
+    with Dead(2) as executor, pytest.raises(ConverseError, match="are gone.*the worker died"):
         prove(LONG, method="loewner", executor=executor)
 
 
@@ -341,7 +319,7 @@ def test_dask_loses_its_scheduler(tmp_path, proof):
 import os, signal, sys
 from converse.commands.prove import main
 from converse.prover import run, shared
-run.ALONE_SECONDS = run.ALONE_RATIO = shared.TASK_RATIO = 0
+run.ALONE_LEAVES = shared.TASK_RATIO = 0
 shared.TASK_SECONDS = 0.01
 took, grow, scheduler = [], shared.Shared._take, int(sys.argv.pop(1))
 def take(self, part, grown):
@@ -461,7 +439,7 @@ def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
 
     for stubborn, text in (False, "0U"), (True, "0UP"):
         task = native.Task(LONG, Settings("loewner", stubborn=stubborn))
-        grown = shared.Shared(task, [part("0U"), part("P")], None, 0.0, False)
+        grown = shared.Shared(task, [part("0U"), part("P")], None)
         view, (first,) = grown.view(), grown.pieces()
         assert view.finished and first.text == text
         assert (view.counts.proved, view.counts.undecided) == (int(stubborn), 1)
@@ -470,7 +448,7 @@ def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
 def test_one_prism_that_may_need_a_longer_orbit_is_remembered():
     """Whatever the tasks that end after it say."""
     tasks = [native.Grown(cells=[((0,), (cuts,), 0)]) for cuts in (1, 2)]
-    search = shared.Shared(native.Task(LONG, Settings()), tasks, None, 0.0, False)
+    search = shared.Shared(native.Task(LONG, Settings()), tasks, None)
     for task, needs_long in zip(tasks, (True, False)):
         search._take(task.cells, native.Grown("P", needs_long=needs_long))
     assert search.view().needs_long and [part.text for part in search.pieces()] == ["PP"]

@@ -5,7 +5,6 @@ import math
 import signal
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
@@ -21,7 +20,7 @@ from converse.commands.prove import parser
 from converse.draw import plot
 from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.problem import IDENTITY
-from converse.prover import native, run, shared
+from converse.prover import native, run
 from converse.prover.report import verdict
 from converse.prover.resume import continued
 from converse.prover.settings import FILED, MAY_CHANGE, SETTINGS
@@ -85,12 +84,11 @@ def test_undecided(problem):
     assert stubborn.tree.startswith(stopped.tree)
 
 
-def test_progress_and_leaves(problem, proof):
-    fractions, seen = [], []
+def test_progress(problem, proof):
+    fractions = []
     result = prove(problem, progress=lambda fraction, counts: fractions.append(fraction),
-                   on_leaf=lambda leaf, steps: seen.append(leaf), method="thesis")
+                   method="thesis")
     assert timeless(result) == timeless(proof)
-    assert seen == list(leaves(problem, proof.tree))
     assert fractions[0] == 0 and fractions[-1] == 1 and all(0 <= x <= 1 for x in fractions)
 
 
@@ -277,7 +275,7 @@ def test_one_backup_for_two_runs_is_refused(tmp_path, problem):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        prove(problem, backup=backup, on_leaf=second, method="thesis")
+        prove(problem, backup=backup, progress=second, method="thesis")
     assert "another run is writing this file" in messages[0]
     assert prove(backup=backup, resume=backup).no_tori
 
@@ -383,32 +381,6 @@ def test_a_backup_that_cannot_be_begun_is_an_error(tmp_path, problem, monkeypatc
     monkeypatch.setattr(files, "write", full)
     with pytest.raises(ConverseError, match="cannot be written"):
         prove(problem, backup=tmp_path / "a.proof", method="thesis")
-
-
-@pytest.mark.parametrize("jobs", [1, 4])
-def test_leaves_in_order_by_many_workers(problem, proof, jobs, monkeypatch):
-    """on_leaf hears of every leaf in preorder, with its orbit's length, whoever decided it."""
-    monkeypatch.setattr(run, "ALONE_SECONDS", 0.0)
-    monkeypatch.setattr(run, "ALONE_RATIO", 0)
-    monkeypatch.setattr(native, "LOOK_SECONDS", 0.002)
-    monkeypatch.setattr(shared, "TASK_SECONDS", 0.01)
-    expected = []
-    prove(problem, jobs=1, on_leaf=lambda *leaf: expected.append(leaf), method="thesis")
-    assert [leaf for leaf, _ in expected] == list(leaves(problem, proof.tree))
-    assert max(points for leaf, points in expected if leaf.kind == "P") == proof.counts.max_NTsteps
-    with ThreadPoolExecutor(jobs) as executor:
-        seen = []
-        assert prove(problem, jobs=jobs, executor=executor,
-                     on_leaf=lambda *leaf: seen.append(leaf), method="thesis").no_tori
-    assert seen == expected
-
-
-def test_only_new_leaves_are_told(problem, proof, interrupted):
-    half = prove(problem, depth=9, stubborn=True, method="thesis")
-    seen = []
-    prove(resume=half, depth=30, on_leaf=lambda leaf, points: seen.append(leaf))
-    old = set(leaves(problem, half.tree, "PS"))
-    assert seen == [leaf for leaf in leaves(problem, proof.tree) if leaf not in old] and seen
 
 
 def test_a_long_set_up_obeys(problem, monkeypatch):

@@ -151,7 +151,7 @@ def test_links_lead_into_regions_that_move(mine, theirs):
             whole = tree_of(cell)
             wrong = wrong_letter(problem, B, HERE, whole, [part])
             assert wrong == (None if axis is None else "a")
-            grown, _ = linked_tree(problem, whole.replace("a", "U"), [0] * len(whole), [target])
+            grown = linked_tree(problem, whole.replace("a", "U"), [target])
             assert ("a" in grown) == (axis is None)
 
 
@@ -212,7 +212,7 @@ def begun():
     first, parts = Links(problem, largest, HERE, HERE), []
     shifts = (Fraction("-0.05"), Fraction("0.03")),
     parts.append(Tree(problem.part(region_of(problem, cells, first, shifts), shifts), HERE))
-    text, _ = linked_tree(problem, grown.text, grown.steps, [
+    text = linked_tree(problem, grown.text, [
         Target("a", first, (parts[0].problem.v0, parts[0].problem.v1), shifts)])
     assert "a" in text and "U" not in text
     other, there = (Fraction("-0.04"), Fraction(0)), ("0.85", "0.85")
@@ -358,25 +358,6 @@ def test_undecided_prisms_of_parts_that_move(moved):
         s, half = part.problem.shifts[0][i], (high - low) / 2
         assert leaf.half[i] == half + abs(s) / 2 and leaf.centre[i] == (low + high) / 2 + s / 2
     assert "the first of them: " in proof.report()
-
-
-def test_leaves_are_told(begun):
-    """The first hundred of a region that moves lie where it does."""
-    part, told = begun.parts[1], []
-
-    def tell(leaf, points):
-        told.append(leaf)
-        if len(told) == 100:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        prove(resume=begun, on_leaf=tell)
-    assert {leaf.kind for leaf in told} == {"P"}
-    for leaf in told:
-        for i, (low, high) in enumerate((part.problem.v0, part.problem.v1)):
-            s = part.problem.shifts[0][i]
-            assert low + min(s, 0) <= leaf.centre[i] - leaf.half[i]
-            assert leaf.centre[i] + leaf.half[i] <= high + max(s, 0)
 
 
 def test_shifts_in_radians():

@@ -107,5 +107,5 @@ def test_theorems_are_proved_and_verified(map_, most, tmp_path):
     rotors("0.9"),                      # each of the three standard maps has circles
     FourierMap({(1, 1, 1): "0.3"})])    # so has the standard map of 0.9
 def test_maps_with_tori_stay_undecided(map_):
-    found = converse_prove(map_, depth=11, stubborn=True, cpu_limit=20)
+    found = converse_prove(map_, depth=11, stubborn=True)
     assert not found.no_tori and found.counts.undecided

@@ -12,7 +12,7 @@ from conftest import around
 from converse.model.map import LINE
 from converse.prover.native import Search, Task, WrongTree, chosen_start, grow
 from converse.prover.settings import Settings
-from converse.prover.shared import OLD, Growth
+from converse.prover.shared import Growth
 
 from truth import TORTURE
 
@@ -76,10 +76,10 @@ def test_what_is_left_goes_on_in_another_search():
     assert one.counts + rest.counts == whole.counts
     search = Search(LOEWNER)
     search.work(0, bool)
-    growth = Growth(search, LOEWNER.settings, one.text, [hint for _, _, hint in one.cells], True)
+    growth = Growth(search, LOEWNER.settings, one.text, [hint for _, _, hint in one.cells])
     growth.work(2, bool)
     again, = growth.pieces()
-    assert again.text == whole.text and again.steps == [OLD] * len(one.text) + rest.steps
+    assert again.text == whole.text
     assert again.counts == growth.view().counts == rest.counts
 
 
