@@ -141,10 +141,11 @@ class Family:
         if symmetries_used(claim) is None:
             raise Rejected("it is of a part of the torus only")
         box, end = self.values(claim.waves)
-        larger = claim.at_once != "no" and self.scales
+        larger = self.scales and (claim.at_once == "yes"
+                                  or claim.at_once == "upper end" and end is not None)
         if larger and len(box) == 1:
             (low, high), = box
-            end, = end if claim.at_once == "upper end" and end else [low if low > 0 else high]
+            end, = end if claim.at_once == "upper end" else [low if low > 0 else high]
             box, larger = ((low if end >= 0 else -math.inf, math.inf if end > 0 else high),), False
         return Member(claim, box, larger and claim.at_once == "yes", text)
 

@@ -136,6 +136,16 @@ def test_all_larger_multiples(ends, box):
     assert found.box == (tuple(x if isinstance(x, float) else F(x) for x in box),)
 
 
+def test_an_upper_end_that_is_no_map_of_the_family():
+    """The multiples of the member's map at t = 1 are none of the family, which the member crosses
+    at t = 0: nothing is known of the multiples of that map."""
+    text = prove(StandardMap(("1.3", "1.4")))._text().replace("at once: yes", "at once: upper end")
+    across = with_line(text, "wave", "1 0 -1/2 1.2 0\nwave: 3 0 -1/2 0 0.02")
+    assert "at once: upper end" in across
+    found = family_of(StandardMap((0, 2))).member(with_line(across, "v0", "1 1").encode())
+    assert (found.box, found.larger) == (((F("1.2"), F("1.2")),), False)
+
+
 def test_the_multiples_of_a_family_with_a_constant_are_not_of_it():
     family = FourierMap({1: {"K": 1}, 2: "0.2"}, K=(0, 3))
     proof = prove(Diagram.of(family).over(((F(2), F("2.1")),)))
