@@ -128,7 +128,7 @@ class Criterion:
 
     def attempt(self, l, cell, penalties):
         """Is (C3) true of the whole cell?  None if so, or else why not, and for each of its axes
-        how much it matters."""
+        how much it matters, or None where halves would fail like it."""
         try:
             return attempt(self.prism(cell), l, penalties)
         except (OverflowError, ValueError, ZeroDivisionError):
@@ -146,7 +146,7 @@ class Criterion:
             if not failed:
                 continue
             why, blame = failed
-            if sum(halved) >= MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
+            if blame is None or sum(halved) >= MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
                 return "%s (piece %d, halved %d times)" % (why, pieces, sum(halved)), pieces
             worst = self.axes[worst_axis(blame, [halved[a] for a in self.axes])]
             index, cuts = piece

@@ -356,7 +356,8 @@ class SecondVariation:
 
 def attempt(prism, l, penalties):
     """Is (C3) true of all orbits of the prism?  None if so, or else why not, and how much each
-    symbol matters.  It is tried where a wave reaches too far, and before at lengths that double."""
+    symbol matters: None where halves would fail like it, as no orbit of the longest is uncertain.
+    It is tried where a wave reaches too far, and before at lengths that double."""
     one, most, why, moved = prism.fixed.one, FIRST_TRY_SITES, None, None
     value = error = 0
     while True:
@@ -380,6 +381,8 @@ def attempt(prism, l, penalties):
     why = why or "the orbit of its centre contradicts nothing over %d points, %s" % (
         sum(map(len, sites)), "the most that are followed" if max(map(len, sites)) >= MAX_SITES else
         "beyond which it is too uncertain")
+    if moved is None and not any([lane.ended for lane in prism.lanes]):
+        return why, None
     # Symbols that move the ends count a little: when they are halved, the orbit may go on.
     ends = [sum([lane.moved(i) for lane in prism.lanes]) / one for i in range(prism.symbols)]
     share = [x / (sum(ends) or 1) for x in ends]

@@ -2660,6 +2660,16 @@ def test_what_is_too_weak(np, texts, generator, monkeypatch):
     assert answers == {False, True}
 
 
+@pytest.mark.quick
+def test_one_orbit_on_a_circle_is_not_halved(texts, monkeypatch):
+    """Its halves would be the same orbit, of the most points that are followed."""
+    monkeypatch.setattr(check, "MAX_SITES", 20)
+    claim = claim_of(general(texts["trig274"], [((1, 0), Fraction(1, 2), Fraction(1, 2), [])],
+                             (Fraction("0.6"), 0), (1, 0), xstar=(0, 0)))
+    why, pieces = check.Criterion(claim).excluded(check.ROOT)
+    assert pieces == 1 and "contradicts nothing over 40 points" in why
+
+
 def at_once(text, centre, half, together):
     text = with_parameters(with_tree(text, "P"), *zip(centre, half))
     text = with_field(with_field(text, "together", together), "at once", "yes")
