@@ -1,7 +1,6 @@
 """Proof files of three angles, whose trees are grown by the checker's own bound; and claims that
 are examined in one angle."""
 
-import contextlib
 import dataclasses
 import itertools
 import math
@@ -10,12 +9,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from files import sealed
-
-from converse.check import main
 
 from checker import check
-from trees import HEAD, found_tree
+from trees import claim_of, found_tree, proof_file, ranged
 
 UNITS = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 XSTAR = "0.575 0.575 0.575"
@@ -32,24 +28,8 @@ def line(eps):
 
 def file_of(tree, waves, ends, xstar=XSTAR, frame=DIAGONAL, **fields):
     """ends: (low, high) of each v."""
-    most, counts = 0, {"cuts": "012345", "proved": "P", "symmetric": "S", "undecided": "U"}
-    with contextlib.suppress(check.Rejected):           # in what is wrong on purpose
-        for at, (_, cuts) in check.leaves(tree):
-            most = max(most, sum(cuts) if tree[at] == "P" else 0)
-    header = {"angles": "3", "frame": frame, "xstar": xstar, "odd about": "no", "alone": "no",
-              "depth": 99, "linked": 0, "most_cuts": most,
-              **{name: sum(map(tree.count, kinds)) for name, kinds in counts.items()},
-              **{"v%d" % i: "%s %s" % (check.decimal_text((low + high) / 2),
-                                       check.decimal_text((high - low) / 2))
-                 for i, (low, high) in enumerate(ends)}}
-    header.update({name.replace("_", " "): value for name, value in fields.items()})
-    return sealed(HEAD + "at once: no\n" + "".join("wave: %s\n" % wave for wave in waves)
-                  + "".join("%s: %s\n" % item for item in header.items() if item[1] is not None)
-                  + "tree:\n%s\n" % tree)
-
-
-def claim_of(text):
-    return check.content(text.encode())
+    return proof_file(tree, waves, **{"angles": 3, "frame": frame, "xstar": xstar, **{
+        "v%d" % i: ranged(*pair) for i, pair in enumerate(ends)}, **fields})
 
 
 def half(waves, frame=DIAGONAL, xstar=XSTAR):
@@ -61,16 +41,6 @@ def half(waves, frame=DIAGONAL, xstar=XSTAR):
     return [(Fraction(math.floor(low * PLACES), PLACES),
              Fraction(math.ceil((high + P[0] / 2) * PLACES), PLACES)), *[
                  (Fraction(0), x) for x in P[1:]]]
-
-
-@pytest.fixture
-def run(tmp_path, capsys):
-    """Checks a text: (status, stdout, stderr)."""
-    def run(text, *options):
-        path = tmp_path / "some.proof"
-        path.write_text(text, "utf-8")
-        return (main([*options, str(path)]), *capsys.readouterr())
-    return run
 
 
 @pytest.fixture(scope="module")
@@ -184,14 +154,11 @@ def test_a_cut_of_v2_in_a_file_of_two_angles(run):
 def test_parts_of_three_angles(run):
     """A leaf is linked to a part at the same x*, whose region has to hold it."""
     waves = line("0.018")               # of which B is known
-    ends, counts = half(waves), {"cuts": 0, "proved": 1, "linked": 1}
+    ends = half(waves)
     for margin, status in ((0, 0), (-1, 5)):
-        text = file_of("a", waves, ends, **counts).rpartition("checksum")[0]
-        wide = [((low + high) / 2, (high - low) / 2 + Fraction(margin, PLACES))
+        wide = [ranged(low - Fraction(margin, PLACES), high + Fraction(margin, PLACES))
                 for low, high in ends]
-        text += "part: a\nxstar: %s\n%stree:\nP\n" % (XSTAR, "".join(
-            "v%d: %s %s\n" % (i, *map(check.decimal_text, pair)) for i, pair in enumerate(wide)))
-        found = run(sealed(text))
+        found = run(file_of("a", waves, ends, parts=[(XSTAR, *wide, "P")]))
         assert found[0] == status, found
         assert "links between starting points" in found[1] or "may lead out" in found[2]
 

@@ -34,7 +34,7 @@ from converse.model.map import LINE
 
 from checker import check, start_of_workers
 from moments import PATIENCE
-from trees import cells_of, found_tree, halves
+from trees import cells_of, claim_of, found_tree, halves
 from truth import TORTURE
 
 # Of a process without sanitizers, which may import what lies about its file.
@@ -118,10 +118,6 @@ def with_parameters(text, *pairs):
     for name, pair in zip("abc", pairs):
         text = with_field(text, name, " ".join(check.decimal_text(Fraction(x)) for x in pair))
     return text
-
-
-def claim_of(text):
-    return check.content(sealed(text).encode())
 
 
 def above(cell):
@@ -644,15 +640,6 @@ def test_what_is_no_file(tmp_path, capsys):
     assert capsys.readouterr().err.count("\n") == 6
 
 
-def test_links_and_pipes(one_file, texts, tmp_path):
-    path, link = tmp_path / "x", tmp_path / "link"
-    path.write_text(texts["trig278"], encoding="utf-8")
-    link.symlink_to(path)
-    assert alone(one_file, link).returncode == 0
-    with open(path, "rb") as file:
-        assert alone(one_file, "/dev/stdin", stdin=file).returncode == 0
-
-
 def test_damaged_gzip(texts, run):
     data = gzip.compress(texts["trig272"].encode())
     for n in (len(data) - 1, len(data) - 9, len(data) // 2, 12, 5):
@@ -744,17 +731,6 @@ def test_the_one_file_says_the_same(texts, moving, diagram, one_file, run, tmp_p
         found = done.returncode, done.stdout, done.stderr.replace(str(path), "FILE")
         assert found == (status, out, err)
     assert statuses == {0, 1, 2, 3, 5}
-
-
-def test_the_one_file_runs_alone(texts, one_file, tmp_path):
-    """No package about it, none installed; but two processes, and its version."""
-    copy, path = tmp_path / "copy.pyz", tmp_path / "x"
-    copy.write_bytes(one_file.read_bytes())
-    path.write_text(texts["trig274"], encoding="utf-8")
-    done = subprocess.run([sys.executable, "-I", "-S", copy, path, "--jobs", "2"],
-                          capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == 0 and "converse-check %s\n" % check.__version__ in done.stdout
-    assert "numpy is not installed" in done.stderr and done.stderr.count("\n") == 1
 
 
 def test_help_names_every_status(capsys):
@@ -1430,10 +1406,9 @@ def test_one_bound_in_two_arithmetics(np, texts, generator, monkeypatch):
     cases = 0
     for _ in range(12 * max(TORTURE, 1)):
         criterion, cell, prism = random_prism(generator, texts, 9)
-        fast, l = check.Lockstep([criterion.claim]), criterion.least_pivot(cell)
+        l = criterion.least_pivot(cell)
         with np.errstate(all="ignore"):
-            prisms = check.Prisms(fast.box(*cells_of([cell]), np.array([0])), fast.shape,
-                                  fast.xstar, np.array([l / criterion.fixed.one]))
+            prisms = prisms_of(criterion.claim, l / criterion.fixed.one, cell)
             assert all(prisms.follow())
             value, _, most, error = prisms.expand()
             bound = value + most + error
@@ -1488,6 +1463,13 @@ def test_no_orbit_of_a_proved_leaf_minimizes(deep, generator):
 def np():
     assert check.import_numpy_if_sound()
     return check.np
+
+
+def prisms_of(claim, l=0.9, cell=check.ROOT):
+    """The prism of a cell, followed by nobody yet."""
+    fast, number = check.Lockstep([claim]), check.np.zeros(1, int)
+    return check.Prisms(fast.box(*cells_of([cell]), number), fast.shape, fast.xstar[:, number],
+                        check.np.array([l]))
 
 
 def random_prisms(np, generator, count=8, scale=1.0):
@@ -1600,15 +1582,13 @@ def test_whole_turns(np, generator):
         assert abs(off) < 1 and -2 ** 63 <= found < 2 ** 63
 
 
-def what_an_error_adds(np, text, name):
+def what_an_error_adds(text, name):
     """An error of each step, and the rests of the hundredth site less those without the error."""
     for angle in "v0", "v1":
         text = with_field(text, angle, "1 0")
-    fast, cell = check.Lockstep([claim_of(text)]), np.zeros((6, 1), np.int64)
-    number, rests = np.zeros(1, int), []
+    rests = []
     for counted in (1, 0):
-        prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
-                              np.array([0.9]))
+        prisms = prisms_of(claim_of(text))
         error = getattr(prisms, name)
         size = error.copy()
         error *= counted
@@ -1623,7 +1603,7 @@ def test_roundings_of_each_step_are_counted(np, texts, c, factor):
     """Where columns are 0 and matrices nearly constant, N steps add up to N^2 / 2 times the error
     of one, in the frame of the angles; in the diagonal one each has both coordinates' errors."""
     text = with_parameters(with_tree(texts["trig278"], "P"), ("1e-9", "0"), ("1e-9", "0"), (c, "0"))
-    push, counted = what_an_error_adds(np, text, "push")
+    push, counted = what_an_error_adds(text, "push")
     assert (push >= 2.0 ** -57 * 1e-9 + 2.0 ** -61).all()
     assert (counted > 0.95 * factor * push * 100 ** 2 / 2).all()
 
@@ -1633,45 +1613,37 @@ def test_roundings_of_waves_that_move_are_counted(np, texts):
     """As above, the roundings of what the parameters do to a wave."""
     text = with_parameters(with_tree(texts["trig278"], "P"), ("1e-9", "1e-9"), ("1e-9", "1e-9"),
                            ("0", "0"))
-    moving, counted = what_an_error_adds(np, text, "from_H")
+    moving, counted = what_an_error_adds(text, "from_H")
     assert (moving >= 2.0 ** -48 * 1e-9).all()
     assert (counted > 0.95 * moving * 100 ** 2 / 2).all()
 
 
+@pytest.mark.parametrize("G, mu, terms, least", [
+    # G is 0, and terms 10 and 20 cancel in it
+    ([0, 0, 0], [0, 0, 0], [10, 20], lambda grain: grain * (10 * (3 + 0.5) + 20 * (4 + 0.5))),
+    # mu of the other lane, which is subtracted, loses digits of its terms
+    ([7, -5, 0], [7, -5, 0], [0, 0], lambda grain: grain * (7 + 5) * (3 + 0.5)),
+    # all coefficients of G, one of them negative, times what x[1] is off by
+    ([1, -2, 0.5], [0, 0, 0], [0, 0], lambda grain: 0.5 * (1 + 2 + 0.5))])
 @pytest.mark.quick
-def test_roundings_of_slopes_where_the_lanes_meet_are_counted(np):
-    """Where G is 0, x[1] is off by its columns 3 and 4 and by 1/2, and terms 10 and 20 cancel in
-    G: what these lose is multiplied by all of that."""
-    ends = np.array([[[1.0], [-2.0]], [[4.0], [0.0]]])
-    shape, none = check.Shape([((1, 0), 0)]), np.zeros((2, 3, 1))
-    prisms = types.SimpleNamespace(other=np.zeros_like, rounding=np.full((2, 1), 0.5), shape=shape,
-                                   ends=ends)
-    sums = types.SimpleNamespace(error=np.zeros(1))
-    check.Prisms.add_ends(prisms, sums, none, none, np.array([[10.0], [20.0]]))
-    assert shape.grain >= 64 * check.UNIT
-    assert sums.error >= shape.grain * (10 * (3 + 0.5) + 20 * (4 + 0.5))
+def test_errors_where_the_lanes_meet_are_counted(np, G, mu, terms, least):
+    """x[1] is off by its columns, which sum to 3 and 4, and by 1/2."""
+    def first(row):
+        return np.array([[[x] for x in map(float, row)], [[0.0]] * 3])
 
-
-def test_the_other_lanes_multiplier_rounds_where_the_lanes_meet(np):
-    """mu of the other lane, whose terms 7 and -5 are subtracted from G, loses digits of these."""
-    mu = np.zeros((2, 3, 1))
-    mu[0, :, 0] = 7, -5, 0
-    prisms = types.SimpleNamespace(other=np.array, rounding=np.full((2, 1), 0.5),
-                                   shape=check.Shape([((1, 0), 0)]),
-                                   ends=np.array([[[1.0], [-2.0]], [[4.0], [0.0]]]))
-    sums = types.SimpleNamespace(error=np.zeros(1))
-    check.Prisms.add_ends(prisms, sums, mu, mu, np.zeros((2, 1)))
-    assert sums.error >= prisms.shape.grain * (7 + 5) * (3 + 0.5)
+    shape, sums = check.Shape([((1, 0), 0)]), types.SimpleNamespace(error=np.zeros(1))
+    check.Prisms.add_ends(types.SimpleNamespace(
+        other=np.array, rounding=np.full((2, 1), 0.5), shape=shape,
+        ends=np.array([[[1.0], [-2.0]], [[4.0], [0.0]]])), sums, first(G), first(mu),
+        np.array([[float(x)] for x in terms]))
+    assert shape.grain >= 64 * check.UNIT and sums.error >= least(shape.grain)
 
 
 @pytest.mark.quick
 def test_a_wave_that_vanishes_in_the_middle_is_there(np, texts):
     """Its parameter moves it, so no orbit goes on where it reaches beyond 1."""
     text = with_parameters(with_tree(texts["trig278"], "P"), ("0", "0.3"), ("0", "0"), ("0", "0"))
-    cell, number = np.zeros((6, 1), np.int64), np.zeros(1, int)
-    fast = check.Lockstep([claim_of(with_field(text, "v0", "1 0.001"))])
-    prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
-                          np.array([0.9]))
+    prisms = prisms_of(claim_of(with_field(text, "v0", "1 0.001")))
     assert all(prisms.follow()) and 1 < len(prisms.sites) < 100
     assert max([site.reach[0].max() for site in prisms.sites]) <= check.REACH_MAX
 
@@ -1681,27 +1653,12 @@ def test_roundings_of_slopes_are_counted_at_every_site(np, texts, monkeypatch):
     """Not only where the lanes meet, which is left out here."""
     monkeypatch.setattr(check.Prisms, "add_ends", lambda prisms, sums, G, *_: setattr(
         sums, "ends", np.zeros((prisms.known, *G.shape[1:]))))
-    cell, number = np.zeros((6, 1), np.int64), np.zeros(1, int)
     text = with_field(with_tree(texts["trig278"], "P"), "v0", "1 0.001")
-    text = with_field(text, "v1", "1 0.001")
-    fast = check.Lockstep([claim_of(text)])
-    prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
-                          np.array([0.3]))
+    prisms = prisms_of(claim_of(with_field(text, "v1", "1 0.001")), 0.3)
     assert all(prisms.follow()) and len(prisms.sites) > 1
     *_, error = prisms.expand()
     prisms.shape.grain = 1.0                    # after all else was made of it
     assert prisms.expand()[-1] > error + 1
-
-
-@pytest.mark.quick
-def test_slopes_where_the_lanes_meet_count_with_what_is_unknown_of_x(np):
-    """All coefficients of G, of which one is negative, times the 1/2 by which x[1] is off."""
-    G = np.array([[[1.0], [-2.0], [0.5]], [[4.0], [0.0], [0.0]]])
-    prisms = types.SimpleNamespace(other=np.zeros_like, rounding=np.full((2, 1), 0.5),
-                                   shape=check.Shape([((1, 0), 0)]), ends=np.zeros((2, 2, 1)))
-    sums = types.SimpleNamespace(error=np.zeros(1))
-    check.Prisms.add_ends(prisms, sums, G, 0 * G, np.zeros((2, 1)))
-    assert sums.error >= 0.5 * (1 + 2 + 0.5 + 4)
 
 
 @pytest.mark.quick
@@ -2055,12 +2012,11 @@ def test_a_leaf_of_long_orbits(np, texts, generator, monkeypatch):
         xstar=(Fraction("0.846028"), Fraction("0.846028"))))
     claim = dataclasses.replace(claim, frame=check.DIAGONALS[2])
     cell = (96814, 858, 5, 0, 0, 0), (17, 12, 10, 0, 0, 0)
-    criterion, fast = check.Criterion(claim), check.Lockstep([claim])
+    criterion = check.Criterion(claim)
     l = check.least_in_double(criterion, cell)
     assert criterion.attempt(criterion.least_pivot(cell), cell, check.SITE_PENALTIES[0]) is None
     with np.errstate(all="ignore"):
-        prisms = check.Prisms(fast.box(*cells_of([cell]), np.array([0])), fast.shape,
-                              fast.xstar, np.array([l]))
+        prisms = prisms_of(claim, l, cell)
         assert all(prisms.follow())
         bound = prisms.bound()[0][0]
         n, tails = prisms.test_vectors()
@@ -2233,14 +2189,11 @@ def test_sines_of_a_step_count_with_their_roundings(np, texts, monkeypatch):
     seen, bending = [], check.bending
     monkeypatch.setattr(check, "bending", lambda P, H, W, s, c, *others: (
         seen.append((s, c)), bending(P, H, W, s, c, *others))[1])
-    cell, number = np.zeros((6, 1), np.int64), np.zeros(1, int)
-    fast = check.Lockstep([claim_of(with_tree(texts["trig278"], "P"))])
-    prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
-                          np.array([0.9]))
+    prisms = prisms_of(claim_of(with_tree(texts["trig278"], "P")))
     prisms.step()
     (site,), (allowed,) = prisms.sites, seen
     for exact, bound in zip((site.s, site.c), allowed):
-        assert (bound >= np.abs(exact) + 23 * check.UNIT * fast.shape.K[:, None]).all()
+        assert (bound >= np.abs(exact) + 23 * check.UNIT * prisms.shape.K[:, None]).all()
 
 
 @pytest.mark.quick

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 import pytest
 from test_check import definite, mp, real
-from test_parts import OTHER, XSTAR, file_of, replaced, run, sealed, with_leaf  # noqa: F401
+from test_parts import OTHER, XSTAR, file_of, replaced, run  # noqa: F401
 
 from checker import check
 from trees import found_tree
@@ -25,10 +25,6 @@ TIGHT = Fraction(1, 10 ** 39)
 
 def decimals(*numbers):
     return " ".join([check.decimal_text(Fraction(x)) for x in numbers])
-
-
-def text_of(link):
-    return file_of(**link)
 
 
 def part_claim(waves, xstar, ranges):
@@ -125,7 +121,7 @@ def idle():
 @pytest.mark.slow
 def test_regions_that_move_are_confirmed(both, later, idle, run):
     for link in (both, later, idle):
-        status, out, _ = run(text_of(link))
+        status, out, _ = run(file_of(**link))
         assert status == 0 and out.startswith("Verified :") and "links between" in out
         assert "\nx* of part a : %s\n" % link["parts"][0][0] in out
 
@@ -139,23 +135,23 @@ def with_s(link):
 
 
 REJECTED = {            # a change of a file, made of the arguments; and what is said
-    "one too many": (lambda f: text_of(with_lines(f, 0, v0=f["parts"][0][1] + " 0")),
+    "one too many": (lambda f: file_of(**with_lines(f, 0, v0=f["parts"][0][1] + " 0")),
                      "part a's v0 is not two or 3 decimal numbers"),
-    "no parameter": (lambda f: text_of({**f, "waves": [" ".join(wave.split()[:4])
+    "no parameter": (lambda f: file_of(**{**f, "waves": [" ".join(wave.split()[:4])
                                                        for wave in ONE]}),
                      "part a's v0 is not two decimal numbers"),
-    "one too few": (lambda f: text_of({**f, "waves": IDLE}),
+    "one too few": (lambda f: file_of(**{**f, "waves": IDLE}),
                     "part a's v0 is not two or 4 decimal numbers"),
-    "in the header's v0": (lambda f: text_of({**f, "v0": V0 + " 0.001"}),
+    "in the header's v0": (lambda f: file_of(**{**f, "v0": V0 + " 0.001"}),
                            "the header's v0 is not two decimal numbers"),
-    "in x*": (lambda f: replaced(text_of(f), "xstar: %s\nv0" % OTHER, "xstar: %s 0\nv0" % OTHER),
+    "in x*": (lambda f: replaced(file_of(**f), "xstar: %s\nv0" % OTHER, "xstar: %s 0\nv0" % OTHER),
               "part b's xstar is not two decimal numbers"),
-    "infinite": (lambda f: text_of(changed(f, 1, "v1", 2, "inf")), "part b's v1 is not two or 3"),
-    "negative half-width": (lambda f: text_of(changed(f, 0, "v1", 1, "-1")),
+    "infinite": (lambda f: file_of(**changed(f, 1, "v1", 2, "inf")), "part b's v1 is not two or 3"),
+    "negative half-width": (lambda f: file_of(**changed(f, 0, "v1", 1, "-1")),
                             "part a's v1: the half-width is negative"),
-    "a leaf S": (lambda f: text_of(changed(with_s(f), 0, "v0", 2, "0.001")),
+    "a leaf S": (lambda f: file_of(**changed(with_s(f), 0, "v0", 2, "0.001")),
                  "part a: symmetric leaf 1 of 1"),
-    "a leaf S, both alike": (lambda f: text_of(changed(changed(
+    "a leaf S, both alike": (lambda f: file_of(**changed(changed(
         with_s(f), 0, "v0", 2, "0.001"), 0, "v1", 2, "0.001")), "but the problem is not symmetric"),
 }
 
@@ -170,7 +166,7 @@ def test_wrong_files_are_rejected(both, run, name):
 def test_a_leaf_s_without_shifts(both, run):
     """So what is wrong above is that the region moves; 0 moves nothing, in either line."""
     for link in (with_s(both), with_lines(with_s(both), 0, v0="1 1.01", v1="1 1.01 0")):
-        assert run(text_of(link))[0] != 1
+        assert run(file_of(**link))[0] != 1
 
 
 def sign(x):
@@ -220,7 +216,7 @@ NOT_CONFIRMED = {
 
 @pytest.mark.parametrize("name", NOT_CONFIRMED)
 def test_what_leads_out_or_is_too_large_is_not_confirmed(both, run, name):
-    status, out, err = run(text_of(NOT_CONFIRMED[name](both)))
+    status, out, err = run(file_of(**NOT_CONFIRMED[name](both)))
     assert (status, out) == (5, "") and err.count("\n") == 1
     assert re.search("is linked to part [ab], but may lead out|limit is 1e300|3000 characters", err)
 
@@ -230,13 +226,13 @@ def test_the_later_part_alone(later, run, by, status):
     """It moves by 1e-30 less or more than the link allows, at one end of the parameters only."""
     link = changed(later, 1, "v0", 2, by=by) if Fraction(by) > 0 else cut_end(
         later, 1, "v0", 1, -Fraction(by))
-    assert run(text_of(link))[0] == status
+    assert run(file_of(**link))[0] == status
 
 
 def test_a_link_that_misses_at_one_end_of_the_parameters(both):
     """What is left out of the region is at one end of the leaf's parameters, and only there."""
     link = cut_end(both, 0, "v0", -1, "1e-30")
-    claim = check.content(text_of(link).encode())
+    claim = check.content(file_of(**link).encode())
     (_, cell), = [leaf for leaf in check.leaves(claim.tree, kinds="Pa")
                   if claim.tree[leaf[0]] == "a"]
     part, out = claim.parts[0], []
@@ -250,19 +246,19 @@ def test_links_of_regions_that_move_alike(run):
     """They lose nothing: the later region is hardly wider than the leaf."""
     shifts = [("0.003", "-0.002")]
     link = chain(ONE, [(XSTAR, shifts), (XSTAR, shifts)])
-    claim = check.content(text_of(link).encode())
+    claim = check.content(file_of(**link).encode())
     a, b = claim.parts
     (_, cell), = [leaf for leaf in check.leaves(a.tree, kinds="Pb") if a.tree[leaf[0]] == "b"]
     for n in (0, 1):
         assert b.half[n] - a.half[n] / (1 << cell[1][n]) < Fraction(3, 10 ** 39)
-    assert run(text_of(link))[0] == 0
+    assert run(file_of(**link))[0] == 0
 
 
 def test_a_parameter_that_moves_no_wave(idle, run):
     """Its shifts count, in links and in prisms."""
     for line, at in (("v0", 3), ("v1", 3)):
-        assert run(text_of(changed(idle, 0, line, at, times=2)))[0] == 5
-        assert run(text_of(changed(idle, 0, line, at, times=-1)))[0] == 5
+        assert run(file_of(**changed(idle, 0, line, at, times=2)))[0] == 5
+        assert run(file_of(**changed(idle, 0, line, at, times=-1)))[0] == 5
 
 
 @pytest.mark.parametrize("line, m", [(0, 0), (0, 1), (1, 0), (1, 1)])
@@ -270,7 +266,7 @@ def test_each_shift_counts_alone(idle, line, m):
     """None is taken for none because others are 0."""
     lines = [words.split()[:2] + ["0", "0"] for words in idle["parts"][0][1:3]]
     lines[line][2 + m] = "0.25"
-    part, = check.content(text_of(with_lines(idle, 0, *map(" ".join, lines))).encode()).parts
+    part, = check.content(file_of(**with_lines(idle, 0, *map(" ".join, lines))).encode()).parts
     assert part.shifts == tuple(tuple(Fraction((i, n) == (line, m), 4) for i in (0, 1))
                                 for n in (0, 1))
 
@@ -294,7 +290,7 @@ def test_shifts_that_sweep_over_orbits_that_minimize(run, part, shifts, status):
              for s in map(Fraction, shifts)]
     link = {"tree": "2P2222222aPPPPPPP", "v0": small, "v1": small, "waves": waves, "xstar": xstar,
             "frame": "1 0 0 1", "parts": [(xstar, *lines, "P")]}
-    found = run(text_of(link))
+    found = run(file_of(**link))
     assert found[0] == status
     if status == 5:
         assert "part a: proved leaf 1 of 1 (v in" in found[2]
@@ -307,7 +303,7 @@ def test_no_orbit_of_a_proved_leaf_minimizes(both, idle):
     graph's map may do to them is in the region of the part, for the same parameters."""
     draw, linked = random.Random(5), 0
     for link in (both, idle):
-        claim = check.content(text_of(link).encode())
+        claim = check.content(file_of(**link).encode())
         check.check_tree(claim)
         criterion, waves = check.Criterion(claim), [(wave.k, 0) for wave in claim.waves]
         for part in (claim, *claim.parts):

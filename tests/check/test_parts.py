@@ -21,7 +21,7 @@ from converse.check import main, verify
 from converse.model.map import SymplecticMap
 
 from checker import check
-from trees import HEAD, found_tree, halves
+from trees import claim_of, decimal, found_tree, halves, proof_file, ranged
 
 VERIFIED = ROOT / "formal" / "build" / "converse-verified"      # of make verified-check
 SYMMETRIC = ["1 0 0 0.2242872", "0 1 0 0.2242872", "1 1 0 0.4485744"]       # epsilon = 0.02
@@ -34,29 +34,7 @@ HALF = "0.5362 0.2502", "0.5 0.5"       # of the torus by reversal and exchange:
 def file_of(tree, v0=HALF[0], v1=HALF[1], waves=SYMMETRIC, frame=DIAGONALS, xstar=XSTAR, parts=(),
             **fields):
     """A proof file; parts are (xstar, v0, v1, tree)."""
-    trees, most = [tree, *[part[3] for part in parts]], 0
-
-    def count(kinds):
-        return sum(tree.count(kind) for tree in trees for kind in kinds)
-
-    for text in trees:
-        with contextlib.suppress(check.Rejected):       # in what is wrong on purpose
-            for at, (_, cuts) in check.leaves(text, kinds="PSU?" + check.LETTERS):
-                most = max(most, sum(cuts) if text[at] == "P" else 0)
-    header = {"frame": frame, "xstar": xstar, "v0": v0, "v1": v1, "odd about": "no", "alone": "no",
-              "at once": "no", "depth": 99, "cuts": count("01234"), "proved": count("P"),
-              "symmetric": count("S"), "undecided": count("U?"), "most_cuts": most,
-              "linked": count(check.LETTERS)}
-    header.update({name.replace("_", " "): value for name, value in fields.items()})
-    text = HEAD + "".join("wave: %s\n" % wave for wave in waves)
-    text += "".join("%s: %s\n" % item for item in header.items()) + "tree:\n%s\n" % tree
-    for letter, part in zip(check.LETTERS + "z", parts):
-        text += "part: %s\nxstar: %s\nv0: %s\nv1: %s\ntree:\n%s\n" % (letter, *part)
-    return sealed(text)
-
-
-def claim_of(text):
-    return check.content(text.encode())
+    return proof_file(tree, waves, parts, frame=frame, xstar=xstar, v0=v0, v1=v1, **fields)
 
 
 def found(v0=HALF[0], v1=HALF[1], **more):
@@ -201,15 +179,6 @@ def test_the_centre_of_the_reversal_with_few_bits(monkeypatch):
         low, high = c0_of(file_of("P", waves=["1 0 %s %s" % (phase, p)], frame="1 0 0 1",
                                   xstar="%s %s" % (x, y)))
         assert low <= (x + p / 2 * math.cos(x + math.pi * phase)) / math.pi <= high
-
-
-def decimal(x):
-    return check.decimal_text(Fraction(x))
-
-
-def ranged(low, high):
-    low, high = Fraction(low), Fraction(high)
-    return "%s %s" % (decimal((low + high) / 2), decimal((high - low) / 2))
 
 
 MOVING = ["1 0 0 0.225 0.001", "0 1 0 0.225 0.001", "1 1 0 0.45 0.002"]
@@ -619,7 +588,6 @@ def test_a_part_and_its_mirror_image_are_all_between_their_ends(centre):
 
 def with_line(*change):
     return sealed(with_text(*change))
-
 
 
 def replaced(text, old, new, count=1):

@@ -1,6 +1,10 @@
-"""Trees and the head of the files that tests make up."""
+"""Trees and proof files that tests make up."""
+
+import contextlib
+from fractions import Fraction
 
 import numpy as np
+from files import sealed
 
 from checker import check
 
@@ -22,6 +26,45 @@ max_NTsteps: 0
 B: 0
 pending: 0
 """
+
+
+def decimal(x):
+    return check.decimal_text(Fraction(x))
+
+
+def ranged(low, high):
+    """The line of a range: its middle and half its width."""
+    low, high = Fraction(low), Fraction(high)
+    return "%s %s" % (decimal((low + high) / 2), decimal((high - low) / 2))
+
+
+def proof_file(tree, waves, parts=(), **fields):
+    """A proof file, with the counts of its trees unless the fields have others; a field None is
+    left out.  parts: of each x*, the lines v0, v1, ... and the tree."""
+    trees, most = [tree, *[part[-1] for part in parts]], 0
+
+    def count(kinds):
+        return sum(tree.count(kind) for tree in trees for kind in kinds)
+
+    for text in trees:
+        with contextlib.suppress(check.Rejected):       # in what is wrong on purpose
+            for at, (_, cuts) in check.leaves(text, kinds="PSU?" + check.LETTERS):
+                most = max(most, sum(cuts) if text[at] == "P" else 0)
+    header = {"odd about": "no", "alone": "no", "at once": "no", "depth": 99, "cuts": count(
+        check.AXES), "proved": count("P"), "symmetric": count("S"), "undecided": count("U?"),
+        "most_cuts": most, "linked": count(check.LETTERS),
+        **{name.replace("_", " "): value for name, value in fields.items()}}
+    text = HEAD + "".join("wave: %s\n" % wave for wave in waves) + "".join(
+        "%s: %s\n" % item for item in header.items() if item[1] is not None)
+    text += "tree:\n%s\n" % tree
+    for name, (*lines, tree) in zip(check.LETTERS + "z", parts):
+        text += "part: %s\n%stree:\n%s\n" % (name, "".join(
+            "%s: %s\n" % line for line in zip(("xstar", *check.ANGLES), lines)), tree)
+    return sealed(text)
+
+
+def claim_of(text):
+    return check.content(sealed(text).encode())
 
 
 def halves(cell, axis):
