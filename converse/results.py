@@ -16,7 +16,6 @@ methods.HOMES.update({
     "Torus.plot": "draw.torus_figure.plotted",
     "ProvedTorus.plot": "draw.torus_figure.plotted",
     "ProvedTorus.report": "tori.report.verdict",
-    "PeriodicOrbit.load": "orbits.points.load",
     "PeriodicOrbit.save": "orbits.points.save",
     "PeriodicOrbit.plot": "orbits.pictures.figure",
     "PeriodicOrbit.report": "orbits.report.of_state",

@@ -28,13 +28,22 @@ import numpy as np
 from converse import ConverseError, orbits
 from converse.commands.common import ended
 from converse.commands.orbits import AT, _check_type, _eps, _value, _vector, read_potential
-from converse.orbits.solver import COLUMNS, row
 from converse.storage import files
 
+COLUMNS = ("potential", "p", "q", "eps", "label", "action", "shadow", "grad_size", "exponent_1",
+           "exponent_2", "deviation_point", "deviation_start", "undetermined")
 LOST = "lost"                           # in place of a label: continuation has lost the branch
 ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "exponent_below",
                  "exponent_above")
 AHEAD = 64                              # vectors that are given to the workers ahead
+
+
+def row(state):
+    """Of a table, in the order of COLUMNS."""
+    exponents = [repr(float(x)) for x in state.exponents] + [""] * (2 - state.potential.n)
+    return [state.potential.name, " ".join(map(str, state.p)), state.q, repr(state.eps),
+            state.label, repr(state.action), repr(state.shadow), repr(state.grad_size), *exponents,
+            *map(repr, state.deviation), state.undetermined]
 
 
 def sweep(potential, vectors, eps, executor=None, file=None, progress=None, jobs=None):

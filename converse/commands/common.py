@@ -5,7 +5,6 @@ import contextlib
 import math
 import os
 import re
-import shlex
 import signal
 import sys
 import time
@@ -32,20 +31,12 @@ class _Formatter(argparse.HelpFormatter):
 
 class Parser(argparse.ArgumentParser):
     """Bad usage is a ConverseError, so that it becomes one line like every other failure.
+"""
 
-    left -- a subcommand that is not typed any more, and is refused"""
-
-    def __init__(self, left=None, **options):
+    def __init__(self, **options):
         super().__init__(**{"formatter_class": _Formatter, "allow_abbrev": False, **options})
         self._negative_number_matcher = re.compile(r"-\.?\d")     # -1e-3 and -0.1:0 are values
         self.add_argument("--version", action="version", version="%(prog)s " + __version__)
-        self.left = left
-
-    def parse_known_args(self, args=None, namespace=None):
-        args = sys.argv[1:] if args is None else args
-        if self.left in args[:1]:
-            self.error("leave out '%s': %s" % (self.left, shlex.join([self.prog, *args[1:]])))
-        return super().parse_known_args(args, namespace)
 
     def error(self, message):
         raise ConverseError("%s; see %s --help" % (message, self.prog))

@@ -1,7 +1,6 @@
 """The command: converse-orbits POTENTIAL TYPE EPS."""
 
 import argparse
-import io
 import math
 import os
 import re
@@ -98,7 +97,7 @@ def _check_type(potential, vector):
 
 
 def parser():
-    p = Parser(prog=COMMAND, left="find", epilog=ENDING, description=(
+    p = Parser(prog=COMMAND, epilog=ENDING, description=(
         "Finds periodic orbits of least action of the map x' = x + p', p' = p - eps grad V(x), "
         "all of one type, by continuation from eps 0, and prints their properties.  Angles have "
         "period 1; those of an input file, and of its results, have period 2 pi."))
@@ -114,45 +113,25 @@ def parser():
                    "state and is a minimum; enclose its action and its exponents")
     p.add_argument("--minimax", action="store_true", help="find the pass to the neighbouring "
                    "minimum, and the flux; with --prove, prove both")
-    p.add_argument("--csv", metavar="FILE", help="write a row for each state")
     p.add_argument("--points", metavar="FILE", help="write the points and momenta of the "
                    "states, as NPZ")
-    p.add_argument("--from", dest="start", metavar="FILE", help="begin at the state "
-                   "of FILE, written by --points, that is nearest in eps, and not at eps 0")
     p.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
                    "the states: SVG, PNG or PDF by the name")
-    p.add_argument("--no-caption", action="store_true", help="draw no caption")
     return p
 
 
 # ---- what is done
 
 def _check_outputs(options, potential_file):
-    others = [potential_file, options.start]
-    if options.csv is not None:
-        files.check_output(options.csv, "table", ["csv"], others)
     if options.points is not None:
         from ..orbits.points import ENDINGS
-        files.check_output(options.points, "file of points", ENDINGS, [*others, options.csv])
-    check_figure(options, *others)
+        files.check_output(options.points, "file of points", ENDINGS, [potential_file])
+    check_figure(options, potential_file)
     if options.graphics is not None:
         from ..orbits.pictures import MOST_STATES
         if sum(map(len, options.eps)) > MOST_STATES:
             raise ConverseError("a figure shows %d states at most; choose fewer eps, or no figure"
                                 % MOST_STATES)
-
-
-def _start(options, potential, straight, eps):
-    """The state that is followed: the straight orbit, or a state of a file."""
-    if options.start is None:
-        return straight
-    from ..orbits.points import load
-
-    family = load(options.start, potential)
-    if (family[0].p, family[0].q) != (straight.p, straight.q):
-        raise ConverseError("%s: its states are of type %s, not %s" % (
-            options.start, family[0].type_text, straight.type_text))
-    return min(family, key=lambda state: abs(state.eps - eps))
 
 
 class _Finding:
@@ -198,18 +177,13 @@ class _Finding:
 
     def write_files(self):
         options = self.options
-        if options.csv is not None:
-            from ..orbits.solver import Family
-            table = io.StringIO(newline="")
-            Family(tuple(self.states)).write_csv(table)
-            files.write(options.csv, table.getvalue().encode("utf-8"))
         if options.points is not None and self.states:
             from ..orbits.points import save
             save(self.states, options.points)
         if options.graphics is not None and self.states:
             from ..orbits.pictures import states_picture
             files.write(options.graphics, states_picture(
-                self.drawn, files.ending(options.graphics), caption=not options.no_caption))
+                self.drawn, files.ending(options.graphics)))
 
 
 def run(options):
@@ -230,14 +204,13 @@ def run(options):
         raise ConverseError("--minimax: the type is not in lowest terms; divide it by %d"
                             % math.gcd(*p, q))
     eps = [x for each in options.eps for x in each]
-    start = _start(options, potential, straight(potential, p, q), eps[0])
-    eps = reached(potential, eps, start.eps)
+    start = straight(potential, p, q)
+    eps = reached(potential, eps)
     say(header(start))
     with ProgressLine(COMMAND) as line:
         found = _Finding(options, line)
         try:
-            follow(potential, p, q, eps, start=start,
-                   progress=lambda _, state: found.add(state),
+            follow(potential, p, q, eps, progress=lambda _, state: found.add(state),
                    on_step=lambda state: line(lambda: "at eps %g, %d of %d states found" % (
                        state.eps, len(found.states), len(eps))))
         except ConverseError as reason:

@@ -41,7 +41,7 @@ def _positive(text):
 
 
 def parser():
-    p = Parser(prog=COMMAND, left="prove", epilog=ENDING, description=(
+    p = Parser(prog=COMMAND, epilog=ENDING, description=(
         "Finds an invariant torus, a graph J = P + S'(y), of %s, in floating-point numbers, and "
         "proves that there is one near it." % MAP))
     p.add_argument("input", nargs="?", metavar="FILE", help="input file, the thesis's or "

@@ -154,9 +154,9 @@ def rows(page, shown, more=None):
         "" if potential.period == 1 else " times 2 pi")
 
 
-def states_picture(states, kind="svg", caption=True):
+def states_picture(states, kind="svg"):
     """The angles and momenta of states of a potential, or of proved orbits, as the bytes of a file
-    of that kind; with a caption or without."""
+    of that kind."""
     if kind not in plot.FORMATS:
         raise ValueError("figures are %s, not %s" % (", ".join(plot.FORMATS), kind))
     if not 0 < len(states) <= MOST_STATES:
@@ -167,7 +167,7 @@ def states_picture(states, kind="svg", caption=True):
         proved = {isinstance(one, ProvedOrbit) for one in states}
         said = ["The potential %s." % drawn(states[0]).potential.name,
                 *[LABELS] * (False in proved), *[PROVED] * (True in proved), rows(page, states)]
-        return "  ".join(filter(None, said)) if caption else None
+        return "  ".join(filter(None, said))
 
     return plot.written(WIDTH, HEIGHT * len(states), kind, fill)
 

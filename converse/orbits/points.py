@@ -6,16 +6,10 @@ origin; x and momenta are for others to read.
 
 import io
 import os
-import zipfile
-import zlib
 
 import numpy as np
 
 from ..storage import files
-from ..storage.files import ConverseError
-from .potential import STUDIED, known
-from .solver import Family
-from .state import PeriodicOrbit
 
 ENDINGS = ("npz",)
 FORMAT = "states 2"
@@ -33,44 +27,3 @@ def save(states, path):
              momentum=[state.momenta for state in states],
              u=[state.u for state in states], origin=[state.origin for state in states])
     files.write(path, data.getvalue())
-
-
-def load(path, potential=None):
-    """See Family.load."""
-    if potential is not None:
-        potential = known(potential)
-    path = os.fspath(path)
-    try:
-        with open(path, "rb") as file:
-            data = file.read()
-    except OSError as error:
-        raise ConverseError("%s: cannot be read (%s); name a readable file"
-                            % (path, files.reason(error))) from None
-    try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as stored:
-            if str(stored["converse"]) != FORMAT:
-                raise ValueError
-            name = str(stored["potential"])
-            p, q = tuple(int(x) for x in stored["p"]), int(stored["q"])
-            found = [(float(eps), u.astype(float, casting="same_kind"),
-                      tuple(map(float, origin)))
-                     for eps, u, origin in zip(*(stored[key] for key in ("eps", "u", "origin")))]
-    except (ValueError, KeyError, IndexError, TypeError, OverflowError, EOFError,
-            zipfile.BadZipFile, MemoryError, RuntimeError, zlib.error):
-        found = []
-    if not found:
-        raise ConverseError("%s: is not a file of states, or damaged: name one that --points "
-                            "or save() wrote" % path)
-    if potential is None:
-        potential = STUDIED.get(name)
-        if potential is None:
-            raise ConverseError("%s: its potential is '%s', which has no name here: give it too "
-                                "(potential=)" % (path, files.plain(name)))
-    if potential.name != name:
-        raise ConverseError("%s: its potential is '%s', not %s" % (path, files.plain(name),
-                                                                  potential.name))
-    try:
-        return Family(tuple(PeriodicOrbit(potential, p, q, eps, u, origin)
-                            for eps, u, origin in found))
-    except ValueError as error:
-        raise ConverseError("%s: is damaged: %s" % (path, error)) from None

@@ -146,7 +146,7 @@ class ProvedOrbit:
         return "\n".join(lines) + "\n"
 
 
-def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = False,
+def prove(state: PeriodicOrbit, digits: Optional[int] = None,
           progress: Optional[Callable[[int, int], object]] = None) -> ProvedOrbit:
     """Proves that a true orbit lies beside a state of least action.
 
@@ -158,9 +158,6 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = Fa
     state : PeriodicOrbit
     digits : int, optional
         The radius of the result is at most 10^-digits, by default 10^-20.
-    descend : bool
-        From a saddle whose least eigenvalue is above -1e-8, prove the minimum below it, which is
-        elsewhere.  A steeper saddle is left by state.relax().
     progress : callable, optional
         progress(places, rounds) is called with the number of decimal places that are tried, and how
         often all points were gone through.
@@ -191,7 +188,7 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = Fa
     if state.least < -EXACT_NULL:
         raise NotProved("the state is a saddle: the least eigenvalue of its Hessian is about %.1e"
                         % state.least)
-    if not descend and state.label == "saddle":
+    if state.label == "saddle":
         raise NotProved("the state is a saddle: it, or it run through several times, is no minimum "
                         "of the action")
     places = wanted + 2 * GUARD_PLACES

@@ -1,10 +1,9 @@
 """Finding states: continuation in eps, and the methods of 1989 (thesis, Appendix A)."""
 
-import csv
 import math
 import os
 from dataclasses import dataclass, replace
-from typing import Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tuple, Union, overload
+from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 
@@ -111,37 +110,6 @@ class Family:
         """
         return provided("Family.plot")(self, column, ax)
 
-    def write_csv(self, file: TextIO) -> None:
-        """Writes a row for each state, with its measures.
-
-        Parameters
-        ----------
-        file : file open for text
-        """
-        rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(COLUMNS)
-        rows.writerows(map(row, self.states))
-
-    @classmethod
-    def load(cls, path: Union[str, "os.PathLike[str]"],
-             potential: Optional[Source] = None) -> "Family":
-        """Reads the states that PeriodicOrbit.save, Family.save or converse-orbits --points
-        wrote, to the last bit.
-
-        Parameters
-        ----------
-        path : str or path
-            The file.
-        potential : SymplecticMap or Potential, optional
-            That of the states, unless it is one with a name here (trig, standard, ...).
-
-        Raises
-        ------
-        ConverseError
-            The file cannot be read, is not such a file, or names another potential.
-        """
-        return provided("PeriodicOrbit.load")(path, potential)
-
     def __repr__(self) -> str:
         first = self.states[0] if self.states else None
         return "<Family: %d states%s>" % (len(self), "" if first is None else " of %s, eps %g to %g"
@@ -162,18 +130,6 @@ class Family:
             As of PeriodicOrbit.save.
         """
         provided("PeriodicOrbit.save")(self.states, path)
-
-
-COLUMNS = ("potential", "p", "q", "eps", "label", "action", "shadow", "grad_size", "exponent_1",
-           "exponent_2", "deviation_point", "deviation_start", "undetermined")
-
-
-def row(state):
-    """The measures of a state, as COLUMNS says."""
-    exponents = [repr(float(x)) for x in state.exponents] + [""] * (2 - state.potential.n)
-    return [state.potential.name, " ".join(map(str, state.p)), state.q, repr(state.eps),
-            state.label, repr(state.action), repr(state.shadow), repr(state.grad_size), *exponents,
-            *map(repr, state.deviation), state.undetermined]
 
 
 def reached(potential, eps, begin=0.0):
@@ -206,7 +162,7 @@ def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[
     progress : callable, optional
         progress(done, state) is called for each state of the result.
     start : PeriodicOrbit, optional
-        A state of this type, such as Family.load reads, instead of the straight orbit.
+        A state of this type instead of the straight orbit.
     on_step : callable, optional
         on_step(state) is called for these and all states on the way to them.
 

@@ -36,16 +36,6 @@ def _fixed(array):
     return array
 
 
-class Gaps(NamedTuple):
-    """The gaps of an orbit of one angle on the circle, widest first: from point i up to point j,
-    which is its neighbour; the width; and x_i, where the gap begins, in the units of the map."""
-
-    i: np.ndarray
-    j: np.ndarray
-    width: np.ndarray
-    x: np.ndarray
-
-
 def type_of(potential, p, q):
     """The type (p, q) as integers.  ValueError: the potential has no such type."""
     n = potential.n
@@ -370,37 +360,6 @@ class PeriodicOrbit:
         return Deviation(*(self.potential.period * sqrt(float(((self.u - c) ** 2).sum(1).max()))
                            for c in (self.u[0], 0.0)))
 
-    def gaps(self, count: Optional[int] = None) -> Gaps:
-        """The gaps between neighbouring points on the circle, widest first; gaps of one width in
-        the order of x.
-
-        Parameters
-        ----------
-        count : int, optional
-            How many of the widest; by default all q.
-
-        Returns
-        -------
-        Gaps
-            Arrays i, j, width and x: a gap begins at point i, whose angle is x, and ends at j.
-
-        Raises
-        ------
-        ValueError
-            There are two angles.
-        """
-        if self.potential.n != 1:
-            raise ValueError("gaps are those of an orbit on a circle; with two angles nothing lies "
-                             "between two points")
-        count = self.q if count is None else whole_number(count, "count", 0, 2 ** 31 - 1)
-        x = self.x[:, 0]
-        i = np.argsort(x, kind="stable")
-        j = np.roll(i, -1)
-        width = x[j] - x[i]
-        width[-1] += self.potential.period
-        order = np.argsort(-width, kind="stable")[:count]
-        return Gaps(i[order], j[order], width[order], x[i[order]])
-
     def minimax(self, step: int = 0) -> Any:
         """The pass from this minimum to one of its neighbours, itself begun at another point, with
         the difference of action, which for one angle is the flux through the gap.
@@ -458,17 +417,6 @@ class PeriodicOrbit:
             matplotlib is missing.
         """
         return provided("PeriodicOrbit.plot")(self, ax)
-
-    @classmethod
-    def load(cls, path: Union[str, "os.PathLike[str]"], potential: Any = None) -> "PeriodicOrbit":
-        """Reads the orbit of a file, the first if there are several.
-
-        Parameters
-        ----------
-        path, potential
-            As of Family.load, with the same errors.
-        """
-        return provided("PeriodicOrbit.load")(path, potential)[0]
 
     # ---- other states
 

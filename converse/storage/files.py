@@ -92,7 +92,7 @@ MADE = {                                # by the ending of its name, how a file 
     "svg": (b"<?xml", b"<dc:title>converse "),              # begins, and what it holds
     "png": (b"\x89PNG", b"Software\0converse "), "pdf": (b"%PDF", b"/Creator (converse "),
     "ps": PS, "eps": PS,
-    "npz": (b"PK", b"converse.npy")}    # and no tables: those of sweeps may be days of work
+    "npz": (b"PK", b"converse.npy")}
 
 
 def check_output(path, what, endings, others=()):
@@ -115,11 +115,10 @@ def check_output(path, what, endings, others=()):
     except OSError as error:
         raise ConverseError("%s: cannot be read (%s); name another file"
                             % (path, reason(error))) from None
-    head, mark = MADE.get(kind, (b"", b""))
-    if data and not (mark and data.startswith(head) and mark in data):
-        raise ConverseError("'%s': exists and is %s; remove it or name another file"
-                            % (path, "a table" if kind == "csv" else
-                               "not a %s of this program" % what))
+    head, mark = MADE[kind]
+    if data and not (data.startswith(head) and mark in data):
+        raise ConverseError("'%s': exists and is not a %s of this program; remove it or name "
+                            "another file" % (path, what))
 
 
 def write(path, data):

@@ -163,8 +163,6 @@ def test_beyond_the_last_torus_there_is_no_theorem(run, tmp_path, numbers, rotat
 
 @pytest.mark.parametrize("arguments,words", [
     (["nowhere.in", "--rotation", "golden"], "nowhere.in"),
-    (["prove", "a b.in", "--rotation", "golden"],
-     "leave out 'prove': converse-tori 'a b.in' --rotation golden;"),
     ([TRIG, "--rotation", "golden"], "two angles"),
     ([K09, "--rotation", "T49"], "one angle"),
     ([K09, "--rotation", "t^2-1: t"], "reducible"),

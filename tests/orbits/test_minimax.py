@@ -262,29 +262,6 @@ def test_a_state_that_is_not_the_least():
         jumbled.minimax()
 
 
-# ---- gaps
-
-def test_gaps():
-    """The widest first; together the circle.  That of the standard map's cantorus is where its
-    widest one is known to be, about x = 0."""
-    state = golden(14, 1.001635)
-    gaps = state.gaps()
-    x = np.sort(state.x[:, 0])
-    assert np.sort(gaps.width) == pytest.approx(np.sort(np.diff(np.append(x, x[0] + 1))))
-    assert (np.diff(gaps.width) <= 0).all() and gaps.width.sum() == pytest.approx(1, abs=1e-12)
-    assert (gaps.x == state.x[gaps.i, 0]).all()
-    assert (gaps.x + gaps.width) % 1 == pytest.approx(state.x[gaps.j, 0], abs=1e-12)
-    assert (gaps.x[0] + gaps.width[0] / 2) % 1 == pytest.approx(0, abs=1e-6) or \
-        (gaps.x[0] + gaps.width[0] / 2) % 1 == pytest.approx(1, abs=1e-6)
-    assert len(state.gaps(3).width) == 3 and (state.gaps(3).i == gaps.i[:3]).all()
-    alone = least(orbits.standard, (0,), 1, 0.5).gaps()
-    assert alone.width.tolist() == [1.0] and alone.i == alone.j == [0]
-    with pytest.raises(ValueError, match="two angles"):
-        least(orbits.trig, (1, 1), 2, 0.01).gaps()
-    with pytest.raises(ValueError, match="count"):
-        state.gaps(-1)
-
-
 def test_no_pass_where_a_higher_one_may_have_been_missed(monkeypatch):
     """Two hills on the way: the lower one is not the pass when the other is not found."""
     potential = fourier({(1,): (1, 0), (2,): (0.4, 0.05)}, "two hills")

@@ -1,7 +1,6 @@
 """The core of the orbits: potentials, the band of the Hessian, states, continuation."""
 
 import copy
-import io
 import json
 import pickle
 import re
@@ -541,7 +540,3 @@ def test_states_are_values(tmp_path):
     family = orbits.follow(orbits.trig, (5, 7), 9, [0.01, 0.02])
     assert isinstance(family[1:], orbits.Family) and list(family[1:].eps) == [0.02]
     assert family[1].eps == 0.02 and [state.eps for state in family] == family.eps.tolist()
-    text = io.StringIO()
-    family.write_csv(text)
-    lines = text.getvalue().splitlines()
-    assert len(lines) == 3 and lines[2].startswith("trig,5 7,9,0.02,minimum,-0.001")

@@ -371,33 +371,19 @@ def minimax(p, q, k):
 @pytest.mark.parametrize("p, q, k", [(-2, 5, 0.04460940551965372), (1, 5, 0.0345), (3, 7, 0.0766),
                                      (-2, 3, 0.0035)])
 def test_a_saddle_is_proved_to_be_nothing_else(p, q, k):
-    """Asked to, prove() goes down to a minimum, says how far that is, and bounds what is there."""
     state = minimax(p, q, k)
     assert state.label == "saddle" and -1e-8 < state.least < -1e-12
     with pytest.raises(NotProved, match="the state is a saddle"):
         prove(state)
-    orbit = prove(state, descend=True)
-    apart = (orbit.nearest.x - state.x + 0.5) % 1 - 0.5
-    assert orbit.moved == pytest.approx(np.abs(apart).max(), abs=1e-12) and orbit.moved > 0.05
-    points = contains(orbit, exact_points(state, orbit.displacements), 70)
-    with mpmath.workdps(70):
-        beta = blocks(state, points)
-    assert orbit.nearest.label == "minimum"
-    assert 0.9 * orbit.nearest.least < orbit.least <= orbit.nearest.least + 1e-13
-    assert bottom(beta) > -1e-13
 
 
 @pytest.mark.parametrize("name, p, origin",
                          [("standard", (0,), (0.0,)), ("ff", (0, 0), (0.0, 0.0))])
 def test_a_saddle_whose_gradient_is_exactly_zero(name, p, origin):
-    """No step of Newton's method leads away from it."""
     state = replace(orbits.straight(getattr(orbits, name), p, 1, origin), eps=1e-10)
     assert state.label == "saddle" and not state.gradient.any()
     with pytest.raises(NotProved, match="the state is a saddle"):
         prove(state)
-    orbit = prove(state, descend=True)
-    assert orbit.moved > 0.1
-    contains(orbit, exact_points(state, orbit.displacements), 120)
 
 
 def test_minimum_that_copies_lose():
@@ -409,9 +395,8 @@ def test_minimum_that_copies_lose():
         [0.039641605025191325, 0.17508214209550604]], (0.0, 0.0)).relax()
     beta = blocks(state, exact_points(state, [[Fraction(float(x)) for x in u] for u in state.u]))
     assert state.least > 0.05 and bottom(beta, 2) < -0.01
-    for descend in False, True:
-        with pytest.raises(NotProved, match="run through several times"):
-            prove(state, descend=descend)
+    with pytest.raises(NotProved, match="run through several times"):
+        prove(state)
     with pytest.raises(NotProved, match="saddle"):
         prove(state.repeat(2))
 

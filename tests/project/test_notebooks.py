@@ -48,7 +48,7 @@ def test_orbits(capsys):
     pair, proved, flux = names["pair"], names["proved"], names["flux"]
     assert pair.minimum.residue < 0 < pair.minimax.residue
     assert proved.flux[0] > 0 and float(proved.flux[0]) == pytest.approx(pair.flux, rel=1e-6)
-    assert names["ghost"].label == "minimum" and names["gaps"].width[0] > 0.01
+    assert names["ghost"].label == "minimum" and names["gaps"].max() > 0.01
     assert flux[0.65][-1] < flux[0.65][0] / 1000 and flux[1.0][-1] > flux[1.0][0] / 10
     out = capsys.readouterr().out
     assert "residues" in out and "one negative direction" in out
