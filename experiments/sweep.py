@@ -222,7 +222,7 @@ def vectors_of(options, potential):
             lines = [line.partition("#")[0].strip() for line in file]
         try:
             return [_check_type(potential, _vector(line)) for line in lines if line]
-        except argparse.ArgumentTypeError as error:
+        except ValueError as error:
             raise ConverseError("%s: %s" % (options.vectors, error)) from None
     if options.farey is not None:
         mediants = farey.triangle(options.farey) if potential.n == 2 else farey.tree(*options.farey)

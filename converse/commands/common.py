@@ -38,6 +38,13 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?\d")     # -1e-3 and -0.1:0 are values
         self.add_argument("--version", action="version", version="%(prog)s " + __version__)
 
+    def _get_value(self, action, arg_string):
+        """What a type makes of an argument; its ValueError says what is wrong."""
+        try:
+            return self._registry_get("type", action.type, action.type)(arg_string)
+        except ValueError as error:
+            raise argparse.ArgumentError(action, str(error)) from None
+
     def error(self, message):
         raise ConverseError("%s; see %s --help" % (message, self.prog))
 
@@ -68,8 +75,7 @@ def whole_number(least, most=LIMIT):
         except ValueError:
             number = None
         if number is None or not least <= number <= most:
-            raise argparse.ArgumentTypeError("'%s' is not a whole number from %d to %d"
-                                             % (text, least, most))
+            raise ValueError("'%s' is not a whole number from %d to %d" % (text, least, most))
         return number
     return convert
 
@@ -77,21 +83,15 @@ def whole_number(least, most=LIMIT):
 def number(text):
     """The type of an argument that is an exact number."""
     from ..model.exact import exact  # late, as all that --help and --version do without
-    try:
-        return exact(text)
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
+    return exact(text)
 
 
 def seconds(text):
     """The type of an argument that is a duration in seconds, perhaps infinite."""
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not number >= 0:
-        raise argparse.ArgumentTypeError("'%s' is not a number of seconds" % text)
-    return number
+    with contextlib.suppress(ValueError):
+        if float(text) >= 0:
+            return float(text)
+    raise ValueError("'%s' is not a number of seconds" % text)
 
 
 def add_worker_options(p, what):
@@ -107,12 +107,11 @@ def add_worker_options(p, what):
 TOGETHER = "a, b and c move together along the segment from all lower to all upper ends"
 
 
-def check_figure(options, *others, prisms=False):
-    """Refuses a figure of -g that cannot be drawn, or would overwrite one of the other files;
-    prisms: whether it is one of the prisms of a proof."""
+def check_figure(options, *others):
+    """Refuses a figure of -g that cannot be drawn, or would overwrite one of the other files."""
     if options.graphics is not None:
         from ..draw import plot  # it takes a while
-        plot.check_file(options.graphics, others, plot.PRISM_FORMATS if prisms else plot.FORMATS)
+        plot.check_file(options.graphics, others)
 
 
 # ---- output

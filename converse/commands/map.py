@@ -1,6 +1,5 @@
 """The command: converse-map INPUT -b FILE."""
 
-import argparse
 import os
 import re
 import sys
@@ -37,8 +36,7 @@ def _budget(text):
     except ValueError:
         seconds = 0
     if seconds <= 0:
-        raise argparse.ArgumentTypeError("'%.40s' is not a time above 0, such as 300, 10min or 2h"
-                                         % text)
+        raise ValueError("'%.40s' is not a time above 0, such as 300, 10min or 2h" % text)
     return seconds
 
 

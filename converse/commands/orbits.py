@@ -1,6 +1,5 @@
 """The command: converse-orbits POTENTIAL TYPE EPS."""
 
-import argparse
 import math
 import os
 import re
@@ -37,14 +36,13 @@ def _eps(text):
         if len(ends) not in (1, 3) or not all(abs(x) < 10 ** 9 for x in ends):
             raise ValueError
     except ValueError:
-        raise argparse.ArgumentTypeError("'%s' is neither a number below 10^9 nor a range "
-                                         "LOW:HIGH:STEP of such numbers" % text) from None
+        raise ValueError("'%s' is neither a number below 10^9 nor a range LOW:HIGH:STEP of such "
+                         "numbers" % text) from None
     if len(ends) == 1:
         return [float(ends[0])]
     low, high, step = ends
     if not step or not 0 <= (high - low) / step < MOST_EPS:
-        raise argparse.ArgumentTypeError("'%s' is a range of no values, or of more than %d"
-                                         % (text, MOST_EPS))
+        raise ValueError("'%s' is a range of no values, or of more than %d" % (text, MOST_EPS))
     return [float(low + k * step) for k in range(int((high - low) / step) + 1)]
 
 
@@ -52,8 +50,8 @@ def _vector(text):
     """'1432,1897/2513': ((1432, 1897), 2513)."""
     match = re.fullmatch(r"\(?(-?\d{1,9})(?:, *(-?\d{1,9}))?\)?/(\d{1,9})", text.strip(), re.ASCII)
     if not match or not int(match[3]):
-        raise argparse.ArgumentTypeError("'%s' is not a type: write p0,p1/q, or p/q for one "
-                                         "angle, whole numbers of at most 9 digits" % text)
+        raise ValueError("'%s' is not a type: write p0,p1/q, or p/q for one angle, whole numbers "
+                         "of at most 9 digits" % text)
     return tuple(int(p) for p in match.groups()[:2] if p is not None), int(match[3])
 
 
@@ -64,8 +62,7 @@ def _value(text):
     try:
         return name.strip(), exact(number.strip())
     except ValueError:
-        raise argparse.ArgumentTypeError("'%s' is not a value of a parameter: write NAME=NUMBER"
-                                         % text) from None
+        raise ValueError("'%s' is not a value of a parameter: write NAME=NUMBER" % text) from None
 
 
 def read_potential(source, at=()):

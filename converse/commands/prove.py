@@ -43,10 +43,7 @@ class ListInputs(argparse.Action):
 
 def _decimal(text):
     from ..model.exact import decimal_text
-    try:
-        return decimal_text(number(text))
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
+    return decimal_text(number(text))
 
 
 def parser():
@@ -63,8 +60,7 @@ def parser():
                    "of that run, except that -d may be larger; FILE is kept up to date, unless -b "
                    "names another")
     p.add_argument("-g", "--graphics", metavar="FILE",
-                   help="draw the prisms in FILE: SVG, PNG, PDF or PostScript (.ps, .eps) by its "
-                        "name; 'off': no figure (default)")
+                   help="draw the prisms in FILE: SVG, PNG or PDF by its name")
     for each in fields(Settings):
         how = {key: value for key, value in each.metadata.items()
                if key in ("help", "metavar", "choices")}
@@ -125,12 +121,9 @@ def run(options):
         if options.xstar is None:
             raise ConverseError("--x2 is the third angle of x*; give the others by --xstar X0 X1")
         options.xstar.append(options.x2)
-    if options.graphics == "off":
-        options.graphics = None
     with contextlib.suppress(AttributeError, OSError, ValueError):
         options.stdin = sys.stdin.fileno()
-    check_figure(options, options.input, options.backup, options.restore, options.stdin,
-                 prisms=True)
+    check_figure(options, options.input, options.backup, options.restore, options.stdin)
     given = {name: getattr(options, name) for name in SETTINGS}
     if options.backup is not None:
         files.check_writable(options.backup, regular=True)

@@ -1,11 +1,9 @@
 """The command: converse-tori INPUT -b FILE."""
 
-import argparse
 import contextlib
 import math
 import os
 import sys
-import threading
 import time
 
 from ..storage import files
@@ -26,8 +24,6 @@ ENDING = ending(
         (2, "bad usage, input or file; or the certificate could not be saved"), SIGNALS))
 GIGABYTE = 10 ** 9
 MOST_POINTS = 1 << 26
-MINUTE = 60.0               # A step that takes longer is shown again each minute.
-LOOK_SECONDS = 1.0          # between two looks whether it does
 QUIET_SECONDS = 2.0         # A run of less time writes no step to a stderr that is not a terminal.
 
 
@@ -36,7 +32,7 @@ QUIET_SECONDS = 2.0         # A run of less time writes no step to a stderr that
 def _positive(text):
     found = number(text)
     if not found > 0:
-        raise argparse.ArgumentTypeError("'%s' is not above 0" % text)
+        raise ValueError("'%s' is not above 0" % text)
     return found
 
 
@@ -81,39 +77,14 @@ def parser():
 
 class _Steps(ProgressLine):
     """Prints each step when it begins, since one step can take minutes: on a terminal in place of
-    the last step, elsewhere on a new line.  A step that takes minutes is shown each minute."""
-
-    def __enter__(self):
-        self.step, self.since, self.ended = "", self.began, threading.Event()
-        self.thread = threading.Thread(target=self._repeat, daemon=True)
-        self.thread.start()
-        return super().__enter__()
-
-    def __exit__(self, *_):
-        self.ended.set()
-        self.thread.join()
-        super().__exit__(*_)
+    the last step, elsewhere on a new line."""
 
     def __call__(self, step):
-        self.step, self.since = step, time.monotonic()
-        self._show(step)
-
-    def _show(self, text):
         if self.shown:
             self.due = 0.0
-            super().__call__(lambda: text)
+            super().__call__(lambda: step)
         elif time.monotonic() > self.began + QUIET_SECONDS:
-            tell(text, COMMAND)
-
-    def _repeat(self):
-        minutes = 1
-        while not self.ended.wait(LOOK_SECONDS):
-            passed = (time.monotonic() - self.since) / MINUTE
-            if passed < 1:
-                minutes = 1
-            elif passed >= minutes:
-                self._show("%s (for %d min)" % (self.step, minutes))
-                minutes += 1
+            tell(step, COMMAND)
 
 
 def _read_problem(options):

@@ -6,7 +6,6 @@ Every picture is drawn by matplotlib (the extra "plot"), whose backend and setti
 import io
 import math
 import os
-import re
 import sys
 import textwrap
 from fractions import Fraction
@@ -21,14 +20,13 @@ from .style import (BLUE, CHART, DARK, GREEN, GREY, ORANGE, PURPLE, SALT, SKY, S
                     VERMILLION)
 
 FORMATS = "svg", "png", "pdf"           # of all pictures, as their names end
-PRISM_FORMATS = *FORMATS, "ps", "eps"   # of the prisms; in 1989 -g wrote PostScript
 COLOURS = {"P": "0.35", "S": "0.85", "a": SKY, "?": "1.0", "U": "#f4b183"}
 EDGES = {"P": "0.1", "S": "0.6", "a": BLUE, "?": "0.6", "U": VERMILLION}
 WIDTHS = {"U": 0.8}                     # of the edges, in points
 LAYERS = "SPa?U"                        # from the bottom: what is not proved is never hidden
 RASTER = 2000                           # with more prisms than this the depth of the cuts is drawn
 PIXELS = 1200
-DPI = 200                               # of a file: PostScript of a raster has 5 MB
+DPI = 200                               # of a file
 SINGLE = Fraction(1, 10 ** 200)         # half-widths below are drawn as 0: matplotlib fails on them
 DEPTHS = "#9ecae1", "#4292c6", "#08306b"   # of the cuts
 RASTER_COLOURS = {"S": (217, 217, 217, 255), "a": (230, 159, 0, 255),
@@ -36,8 +34,7 @@ RASTER_COLOURS = {"S": (217, 217, 217, 255), "a": (230, 159, 0, 255),
 LETTERS = 17                            # of a caption, in an inch
 PROGRAM = "converse " + __version__         # by which files.check_output knows its pictures
 METADATA = {"svg": {"Creator": PROGRAM, "Date": None}, "png": {"Software": PROGRAM},
-            "pdf": {"Creator": PROGRAM, "CreationDate": None}, "eps": {"Creator": PROGRAM}}
-PS_DATE = re.compile(rb"%%CreationDate: .*\n")        # which matplotlib always writes
+            "pdf": {"Creator": PROGRAM, "CreationDate": None}}
 
 
 def check():
@@ -64,17 +61,17 @@ def _import_matplotlib():
             os.environ["MPLBACKEND"] = backend
 
 
-def check_file(path, others=(), formats=FORMATS):
+def check_file(path, others=()):
     """The format that the name of a new figure asks for.  ConverseError, before the work starts: it
     cannot be drawn there, would overwrite one of the other files of the run or a file that is not a
     figure of this program, or matplotlib is missing."""
-    files.check_output(path, "figure", formats, others)
+    files.check_output(path, "figure", FORMATS, others)
     check()
     return files.ending(path)
 
 
 def write(proof, path, caption=True):
-    """Draws a proof, finished or not, in a file whose name ends as one of PRISM_FORMATS.
+    """Draws a proof, finished or not, in a file whose name ends as one of FORMATS.
 
     caption: whether the lines above the prisms state what is proved and by what.
     ConverseError: the file cannot be written, or matplotlib is missing."""
@@ -88,9 +85,8 @@ def write(proof, path, caption=True):
 def encode(figure, kind, **options):
     """A Figure as the bytes of a file of that kind, without a date.  PostScript is encapsulated."""
     data = io.BytesIO()
-    kind = "eps" if kind == "ps" else kind
     figure.savefig(data, format=kind, bbox_inches="tight", metadata=METADATA[kind], **options)
-    return PS_DATE.sub(b"", data.getvalue()) if kind == "eps" else data.getvalue()
+    return data.getvalue()
 
 
 def _figure(**options):

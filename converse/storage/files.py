@@ -87,11 +87,9 @@ def check_writable(path, regular=False):
                             % (path, reason(error))) from None
 
 
-PS = b"%!PS-Adobe", b"%%Creator: converse "
 MADE = {                                # by the ending of its name, how a file of this program
     "svg": (b"<?xml", b"<dc:title>converse "),              # begins, and what it holds
     "png": (b"\x89PNG", b"Software\0converse "), "pdf": (b"%PDF", b"/Creator (converse "),
-    "ps": PS, "eps": PS,
     "npz": (b"PK", b"converse.npy")}
 
 

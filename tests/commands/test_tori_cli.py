@@ -7,7 +7,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from fractions import Fraction
 
 import pytest
@@ -307,20 +306,6 @@ def test_the_time_limit(run, tmp_path, monkeypatch):
     assert (status, out) == (2, "") and one_line(err) and "golden.torus.found: exists" in err
     assert run(*given, "-r", found)[0] == 0
     assert [each.name for each in tmp_path.iterdir()] == [file.name]
-
-
-def test_a_step_that_takes_minutes_is_told_each_minute(monkeypatch, capsys):
-    monkeypatch.setattr(cli, "MINUTE", 0.05)
-    monkeypatch.setattr(cli, "LOOK_SECONDS", 0.01)
-    monkeypatch.setattr(cli, "QUIET_SECONDS", 0)
-    with cli._Steps() as steps:
-        steps("the first step")
-        time.sleep(0.3)
-        steps("the second step")
-    err = capsys.readouterr().err.splitlines()
-    assert err[:3] == ["converse-tori: the first step" + more for more in (
-        "", " (for 1 min)", " (for 2 min)")]
-    assert err[-1] == "converse-tori: the second step"
 
 
 def test_a_certificate_is_one_runs_alone(run, tmp_path):

@@ -292,7 +292,7 @@ def test_full_disk_for_the_figure(command, root, tmp_path):
     def small_files():
         resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
 
-    figure = tmp_path / "figure.ps"
+    figure = tmp_path / "figure.pdf"
     status, out, err = command("-g", figure, root / "inputs" / "trig278.in",
                                preexec_fn=small_files)
     assert status == 2 and "I find no invariant tori" in out
