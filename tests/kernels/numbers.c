@@ -5,6 +5,7 @@
 #include "arith/guard.h"
 #include "arith/sine.h"
 #include "arith/special.h"
+#include "arith/sym.h"
 #include "console.h"
 #include "torus.h"
 #include "thesis/unit.h"
@@ -244,6 +245,22 @@ static int sine_and_cosine(long dp, apm_t in[], apm_t out[])
     return CV_OK;
 }
 
+/* n, l, entries of a matrix -> is it above l, its least eigenvalue */
+static int matrix(long dp, apm_t in[], apm_t out[])
+{
+    const int n = (int)apm_nearest_d(in[0]);
+    double d[MOST_ENTRIES];
+
+    (void)dp;
+    if (n < 1 || n > 3)
+        return CV_EARGUMENT;
+    for (int i = 0; i < MOST_ENTRIES; i++)
+        d[i] = apm_nearest_d(in[2 + i]);
+    apm_set_d(out[0], sym_is_above(n, d, apm_nearest_d(in[1])) ? 1.0 : 0.0);
+    apm_set_d(out[1], sym_least_eigenvalue(n, d));
+    return CV_OK;
+}
+
 static int sines_ns(long dp, apm_t in[], apm_t out[]) /* x, n -> nanoseconds of three, n times */
 {
     double t[3] = { apm_nearest_d(in[0]), 1.0, 2.0 }, cosine[3] = { 0.0, 0.0, 0.0 };
@@ -334,6 +351,7 @@ static const struct {
     { { "region", 2, 2 }, region },
     { { "region_that_moves", 5, 5 }, region_that_moves },
     { { "double_sincos", 1, 2 }, sine_and_cosine },
+    { { "matrix", 2 + MOST_ENTRIES, 2 }, matrix },
     { { "double_sincos_ns", 2, 1 }, sines_ns },
     { { "torus", 6, 2 }, torus },
     { { "cell", 10, 2 }, cell },

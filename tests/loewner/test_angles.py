@@ -87,6 +87,21 @@ def variation(rng, patch, n, first, l, s, t):
     return total
 
 
+@pytest.mark.parametrize("rows", [1, 2, 3])
+def test_matrices_above_a_number(rows):
+    """All eigenvalues count, also where two of them are below it, and the determinant is not."""
+    rng, found, (i, j) = rng_for("matrices %d" % rows), [], np.triu_indices(rows)
+    for _ in range(60):
+        d = np.array([[rng.uniform(-1, 1) for _ in range(rows)] for _ in range(rows)])
+        d, l = d + d.T, rng.uniform(-1, 1)
+        least = np.linalg.eigvalsh(d)[0]
+        above, value = kernels.call("matrix", [rows, Fraction(l), *map(Fraction, d[i, j]),
+                                               *[0] * (6 - i.size)], 2, 30)
+        assert above == (least > l) and abs(float(value) - least) < 1e-5
+        found.append((bool(above), (np.linalg.eigvalsh(d) < l).sum()))
+    assert {(True, 0), *[(False, n) for n in range(1, rows + 1)]} <= set(found)
+
+
 @pytest.mark.parametrize("angles", [1, 3])
 def test_the_bound_holds(angles):
     """The second variation with the core's vectors, along true orbits, is below its bound."""

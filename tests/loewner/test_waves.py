@@ -662,6 +662,8 @@ def test_at_once():
     assert at_once(THESIS, low, [("0.03", "0.03", "0.06")]) == 2
     assert at_once(THESIS, low, [("0.03", 0, 0), (0, "0.03", 0), (0, 0, "0.06")]) == 0
     assert at_once(THESIS, ("0.31", "0.31", "0.62"), [("0.02", "-0.02", "0")]) == 1
+    assert at_once([(1, 0)], ["1.35"], [["0.15"]]) == 2     # where K grows with t, or falls
+    assert at_once([(1, 0)], ["1.35"], [["-0.15"]]) == 0
     assert at_once([(1, 0)], ["1.34"], v0=(0, 2)) == 1 and at_once([(1, 0)], ["1.33"]) == 0
     assert at_once([(1, 1)], ["0.667"], frame=(1, 1, -1, 0)) == 1
     assert at_once([(1, 1)], ["0.666"], frame=(1, 1, -1, 0)) == 0
