@@ -29,6 +29,7 @@ ENDING = ending(
         (2, "bad usage, input or file; the result could not be saved; or the workers are gone"),
         (3, "a theorem for a part of the torus only"),
         (4, "as printed in the thesis, not a proof"), SIGNALS))
+LEAF_WORDS = {"P": "proved", "S": "symmetric", "U": "undecided"}
 
 
 class ListInputs(argparse.Action):
@@ -61,6 +62,8 @@ def parser():
                    "names another")
     p.add_argument("-g", "--graphics", metavar="FILE",
                    help="draw the prisms in FILE: SVG, PNG or PDF by its name")
+    p.add_argument("-t", "--verbose", action="store_true",
+                   help="print a line for every decided prism, after the search")
     for each in fields(Settings):
         how = {key: value for key, value in each.metadata.items()
                if key in ("help", "metavar", "choices")}
@@ -79,6 +82,17 @@ def parser():
     p.add_argument("--list-inputs", action=ListInputs, nargs=0,
                    help="print the paths of the input files that come with the program, and exit")
     return p
+
+
+def _leaf_lines(proof):
+    """The lines of -t: kind, centre and half-widths in radians, cuts."""
+    from ..prover.tree import leaves
+    for each in proof.trees:
+        for leaf in leaves(each.problem, each.text):
+            centre, half = (", ".join("%.10g" % (x * math.pi) for x in each)
+                            for each in (leaf.centre, leaf.half))
+            yield "%-9s (%s) +- (%s), %d cuts\n" % (
+                LEAF_WORDS.get(leaf.kind, "linked"), centre, half, leaf.depth)
 
 
 class Progress:
@@ -145,6 +159,8 @@ def run(options):
                       progress=progress, **given)
         if not options.begun:           # the time limit came before the search
             progress(0.0, proof.counts)
+    for line in _leaf_lines(proof) if options.verbose else ():
+        say(line)
     say(verdict(proof, options.backup or options.restore or ""))
     if options.graphics is not None:
         from ..draw import plot

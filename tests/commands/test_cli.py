@@ -86,6 +86,20 @@ def test_precision(run, sample):
     assert "Arithmetic : 50 decimal places" in run("-p", "50", sample)[1]
 
 
+@pytest.mark.parametrize("method", ["thesis", "loewner"])
+def test_verbose(run, sample, method):
+    given = ["--method", method] + ["--together"] * (method == "loewner")
+    plain, told = (run(*given, *flag, sample) for flag in ([], ["-t"]))
+    leaf = re.compile(r"(proved|symmetric|undecided) +\(\S+, \S+\) \+- \(\S+, \S+\), [0-9]+ cuts")
+    found = [line for line in told[1].split("\n") if leaf.fullmatch(line)]
+    rest = "\n".join(line for line in told[1].split("\n") if line not in found)
+    rest, expected = (re.sub(r"[0-9.]+ s\n", "", timeless(text)) for text in (rest, plain[1]))
+    assert (told[0], rest, told[2]) == (plain[0], expected, "")
+    proved = sum(line.startswith("proved") for line in found)
+    successful = re.search(r"Of the (\S+) successful prisms|(\S+) prisms? proved", rest)
+    assert proved == int((successful[1] or successful[2]).replace(",", "")) <= len(found)
+
+
 def test_as_printed(run, sample):
     status, out, err = run("--as-printed", sample)
     assert status == 4
@@ -98,8 +112,9 @@ def test_as_printed(run, sample):
 def test_help_and_version(run):
     status, out, err = run("--help")
     assert status == 0 and err == ""
-    for flag in ("-d", "-b", "-r", "-g", "-p", "-s", "--as-printed", "--depth", "--backup",
-                 "--restore", "--graphics", "--precision", "--stubborn", "--version"):
+    for flag in ("-d", "-b", "-r", "-g", "-p", "-s", "-t", "--as-printed", "--depth",
+                 "--backup", "--restore", "--graphics", "--precision", "--stubborn", "--verbose",
+                 "--version"):
         assert flag in out
     assert run("--version") == (0, "converse %s\n" % __version__, "")
 
