@@ -155,9 +155,9 @@ def test_parts_of_three_angles(run):
     """A leaf is linked to a part at the same x*, whose region has to hold it."""
     waves = line("0.018")               # of which B is known
     ends = half(waves)
-    for margin, status in ((0, 0), (-1, 5)):
-        wide = [ranged(low - Fraction(margin, PLACES), high + Fraction(margin, PLACES))
-                for low, high in ends]
+    for short, status in ((None, 0), (0, 5), (1, 5), (2, 5)):
+        wide = [ranged(low, high - Fraction(axis == short, PLACES))
+                for axis, (low, high) in enumerate(ends)]
         found = run(file_of("a", waves, ends, parts=[(XSTAR, *wide, "P")]))
         assert found[0] == status, found
         assert "links between starting points" in found[1] or "may lead out" in found[2]
@@ -167,7 +167,7 @@ def test_the_bound_over_three_angles():
     """B of the line is at the sines' common least value; of standard maps that of the largest."""
     fixed = check.fixed_of(96)
     for waves, corner, B in ((UNITS + ((1, 1, 1),), (0.1, 0.12, 0.1, 0.2), None),
-                             (UNITS, (0.3, -0.5, 0.2), 2.5)):
+                             (UNITS, (0.3, -0.5, 0.2), 2.5), (UNITS, (0.3, 0.2, -0.5), 2.5)):
         known = [(k, 0) for k in waves]
         bound = check.torus_bound(fixed, known, [tuple(int(p * fixed.one) for p in corner)])
         grid = np.linspace(-math.pi, math.pi, 41)
@@ -177,6 +177,26 @@ def test_the_bound_over_three_angles():
         most = np.linalg.eigvalsh(beta).max()
         assert most - 1e-12 < bound / fixed.one < most + 0.05
         assert B is None or abs(bound / fixed.one - B) < 1e-6
+
+
+def test_the_bound_over_a_cell_of_three_angles():
+    """It holds at each corner, and is near the truth there where the cell is small."""
+    fixed, draw, nearest = check.fixed_of(96), random.Random(5), math.inf
+    for _ in range(100):
+        known = [([draw.randint(-1, 1) or 1 for _ in "012"], draw.uniform(-3, 3))
+                 for _ in range(draw.randint(1, 3))]
+        corner = [draw.uniform(-1, 1) for _ in known]
+        y, w = [draw.uniform(-3, 3) for _ in "012"], draw.choice((0.01, 0.1))
+        bound, _ = check.cell_bound(fixed, [(tuple(k), int(phase * fixed.one)) for k, phase in known],
+                                    *[[int(x * fixed.one) for x in row] for row in (corner, y)],
+                                    int(w * fixed.one))
+        most = max([np.linalg.eigvalsh(2 * np.eye(3) - sum(
+            [p * math.sin(np.dot(k, y + w * np.array(e)) + phase) * np.outer(k, k)
+             for (k, phase), p in zip(known, corner)]))[-1]
+            for e in itertools.product((-1, 1), repeat=3)])
+        assert most - 1e-9 < bound / fixed.one
+        nearest = min(nearest, bound / fixed.one - most)
+    assert nearest < 1e-3
 
 
 SORTED = "1 2 1 1 -1 1 1 -1 -2"

@@ -2176,6 +2176,24 @@ def test_inverses_of_a_step_count_with_their_roundings(np, generator):
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize("rows", (1, 2, 3))
+def test_inverses_of_a_step_count_as_step_c15_has_it(np, generator, rows):
+    """|I - M d| is bounded by 5 u |1/det| times the products of cofactors and d without signs, and
+    by 6 u |1/det| times the determinant without signs."""
+    i, j = np.triu_indices(rows)
+    for width in 0, 0.3:
+        d = np.array([(a == b) * 2 + width * generator.uniform(-1, 1) for a, b in zip(i, j)])
+        matrix = np.empty((rows, rows))
+        matrix[i, j] = matrix[j, i] = d
+        rests, none = np.array([[generator.uniform(0, 1)] for _ in i[:rows]]), np.zeros((rows, 1))
+        f, _, det = check.next_rest(d[:, None], none, none, rests, none, np.zeros((len(d), 1)))
+        some = np.empty((rows, rows))
+        some[i, j] = some[j, i] = check.cofactors(abs(d), 1)
+        least = 5 * some @ abs(matrix) @ rests + 6 * (abs(matrix[0]) @ some[0]) * rests
+        assert (f >= least * (2.0 ** -53 * (1 - 1e-9) / abs(det))).all()
+
+
+@pytest.mark.quick
 def test_cells_too_fine_for_doubles_are_left_to_the_integers(np, texts):
     fast, asked = check.Lockstep([claim_of(with_tree(texts["trig278"], "P"))]), []
     cell = (0,) * 6, (check.FAST_CUTS_MAX + 1, 0, 0, 0, 0, 0)

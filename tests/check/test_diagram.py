@@ -109,7 +109,8 @@ def test_of_which_values_a_member_speaks(lines, values):
     ("1 0 0 1.1", "2 0 0 -0.5"),                                # a wave is missing,
     ("1 0 0 1.1", "2 0 0 -0.5", "3 0 0 1/3", "4 0 0 1e-9"),     # or there is another
     ("1 0 0 1.1", "2 0 0 -0.51", "3 0 0 1/3"), ("1 0 1e-9 1.1", "2 0 0 -0.5", "3 0 0 1/3"),
-    ("1 0 0 1.1 0", "2 0 0 -0.5 0", "3 0 0 0.3 0.01"),          # 1/3 is not enclosed
+    ("1 0 0 1.1 0", "2 0 0 -0.5 0", "3 0 0 0.3 0.01"),          # 1/3 is not enclosed: t > 1,
+    ("1 0 0 1.1 0", "2 0 0 -0.5 0", "3 0 0 0.4 0.01"),          # t < -1
     ("1 1 0 1.1", "2 0 0 -0.5", "3 0 0 1/3")])
 def test_a_member_of_another_family_is_rejected(lines):
     with pytest.raises(check.Rejected, match="not of the family"):

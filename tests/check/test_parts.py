@@ -571,6 +571,13 @@ def test_a_part_does_not_stand_for_its_mirror_image(run, name):
     assert (status, out) == (5, "") and "is linked to part a, but may lead out of" in err
 
 
+def test_a_mirror_image_that_does_not_touch_the_region():
+    """The range of v1 has to reach 0, however wide that of v0 is."""
+    for v1, touches in ("0.25 0.25", True), ("0.25 0.2", False), ("-0.25 0.2", False):
+        claim = claim_of(file_of("a", parts=[(XSTAR, HALF[0], v1, "P")]))
+        assert check.folds(claim.parts[0]) == touches
+
+
 @pytest.mark.parametrize("centre", ["0.25", "-0.25"])
 def test_a_part_and_its_mirror_image_are_all_between_their_ends(centre):
     """-0.25 <= v1 <= 0.75 with its image holds |v1| <= 0.75, and no more."""
@@ -632,6 +639,8 @@ WRONG_STRUCTURE = {         # arguments of a file with two links -> a text; and 
     "a tree too long": (lambda f: file_of(**with_part(f, 1, tree="PP")), "before its text does"),
     "undecided in a part": (lambda f: replaced(file_of(**with_part(
         f, 1, tree="0U" + tree_of_part(f, 1))), "undecided: 1", "undecided: 0"), "is undecided"),
+    "undecided beside links": (lambda f: replaced(file_of(**{**f, "tree": with_leaf(
+        f["tree"], "U")}), "undecided: 1", "undecided: 0"), "is undecided"),
     "a parameter that there is not": (lambda f: file_of(**with_part(
         f, 1, tree="2PP")), "an angle or a parameter that there is not"),
     "symmetric in a part": (lambda f: file_of(**with_part(f, 0, tree="0S" + tree_of_part(f))),
