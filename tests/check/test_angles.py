@@ -187,9 +187,9 @@ def test_the_bound_over_a_cell_of_three_angles():
                  for _ in range(draw.randint(1, 3))]
         corner = [draw.uniform(-1, 1) for _ in known]
         y, w = [draw.uniform(-3, 3) for _ in "012"], draw.choice((0.01, 0.1))
-        bound, _ = check.cell_bound(fixed, [(tuple(k), int(phase * fixed.one)) for k, phase in known],
-                                    *[[int(x * fixed.one) for x in row] for row in (corner, y)],
-                                    int(w * fixed.one))
+        units = [(tuple(k), int(phase * fixed.one)) for k, phase in known]
+        bound, _ = check.cell_bound(fixed, units, *[
+            [int(x * fixed.one) for x in row] for row in (corner, y)], int(w * fixed.one))
         most = max([np.linalg.eigvalsh(2 * np.eye(3) - sum(
             [p * math.sin(np.dot(k, y + w * np.array(e)) + phase) * np.outer(k, k)
              for (k, phase), p in zip(known, corner)]))[-1]

@@ -2828,6 +2828,16 @@ def test_which_potentials_are_symmetric(texts, generator, waves, order):
 
 
 @pytest.mark.quick
+def test_a_linked_leaf_is_no_proved_mirror_image(texts):
+    text = general(texts["trig274"], [((1, 0), 0, 1, []), ((0, 1), 0, 1, [])],
+                   xstar=("0.5", "0.5"))
+    for tree, proved in ("01PP1SP", True), ("01Pa1SP", False):
+        claim = dataclasses.replace(claim_of(text), tree=tree)
+        cell, = [cell for at, cell in check.leaves(tree, kinds="PSa") if tree[at] == "S"]
+        assert (check.Mirror(claim).refusal(cell) is None) == proved
+
+
+@pytest.mark.quick
 def test_coefficients_are_those_of_the_potential(generator):
     for _ in range(100):
         waves = [check.Wave(k, phase + generator.randint(-3, 3), exact_decimal(generator, 1),

@@ -195,6 +195,13 @@ def test_cuts_of_parameters_do_not_lessen_what_is_undecided(tree, strip, lost):
     assert region_of(patch, Fraction(strip), tree).counts["lost"] == Fraction(lost)
 
 
+@pytest.mark.parametrize("axis", "1345")
+def test_cuts_of_what_a_portrait_does_not_have_are_rejected(axis):
+    wave = check.claim.Wave((1, 0), Fraction(0), Fraction(1), (Fraction(1, 10),))
+    with pytest.raises(check.Rejected, match="part 1: the tree cuts an angle or a parameter that"):
+        region_of((wave,), Fraction(0), axis + "UP")
+
+
 def test_the_share_of_a_slice_of_t2_is_that_of_the_points_of_the_strip():
     """s = arcsin(angle t2)/k: the outermost slices of t2 hold more of s than of t2."""
     wave = check.claim.Wave((1, 0), Fraction(0), Fraction(1), ())
