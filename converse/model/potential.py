@@ -82,26 +82,6 @@ class FourierSum(NamedTuple):
                 yield (tuple(k), product((-p, -p), sine_bounds(phase, more)),
                        product((-p, -p), sine_bounds(phase + QUARTER, more)))
 
-    def text(self, turn: str = "2 pi", letter: str = "x") -> str:
-        """V(2 pi x) in words, exactly.  turn: the factor of the angles, or "" for V(y)."""
-        parts = []
-        for (*k, phase), p in zip(self.waves, self.amplitude):
-            names = angle_names(letter, self.dimension)
-            angle = sum_text(zip(k, names))
-            if not any(k):                      # a constant, of phase 1/2
-                parts.append((-p, ""))
-                continue
-            if turn:
-                angle = "%s %s" % (turn, angle if angle in names else "(%s)" % angle)
-            if (2 * phase).denominator == 1:
-                function = "cos" if phase % 1 else "sin"
-                sign = -sine_bounds(phase if phase % 1 else phase + QUARTER, 0)[0]
-                parts.append((sign * p, "%s(%s)" % (function, angle)))
-            else:
-                parts.append((-p, "sin(%s %s %s pi)" % (angle, "-" if phase < 0 else "+",
-                                                        abs(phase))))
-        return sum_text(parts)
-
 
 def two_at_most(dimension: int) -> None:
     """ValueError: tori or orbits are to be found of a map of three angles."""
@@ -115,19 +95,22 @@ def angle_names(letter: str, dimension: int) -> Tuple[str, ...]:
     return tuple(letter + str(i) for i in range(dimension)) if dimension > 1 else (letter,)
 
 
-def potential_text(waves, forms, dimension: int) -> str:
-    """V(y), exactly.  forms: each amplitude as a linear form of parameters, {name: factor}; the
-    name "" is the constant's."""
-    text = harmonics_text(waves, forms, [-1] * len(waves), 0, dimension)
+def potential_text(waves, forms, dimension: int, letter: str = "y", turn: str = "") -> str:
+    """V(y), or V of turn times the angles, exactly.  letter: of an angle; forms: each amplitude as
+    a linear form of parameters, {name: factor}; the name "" is the constant's."""
+    text = harmonics_text(waves, forms, [-1] * len(waves), 0, dimension, letter, turn)
     return "-" * text.startswith(" -") + text[3:] or "0"
 
 
-def harmonics_text(waves, forms, factors, quarters: int, dimension: int) -> str:
+def harmonics_text(waves, forms, factors, quarters: int, dimension: int, letter: str = "y",
+                   turn: str = "") -> str:
     """The sum of factor p sin(k.y + phi + quarters pi/2), exactly, each term with its sign: it is
     written with k.y alone where phi is a multiple of pi/2."""
-    letters, text = angle_names("y", dimension), ""
+    letters, text = angle_names(letter, dimension), ""
     for (*k, phase), form, factor in zip(waves, forms, factors):
         angle, (function, sign) = sum_text(zip(k, letters)), QUARTERS[quarters]
+        if turn:
+            angle = "%s %s" % (turn, angle if angle in letters else "(%s)" % angle)
         if (2 * phase).denominator == 1:
             function, sign = QUARTERS[int(2 * phase + quarters) % 4]
         else:
@@ -147,7 +130,7 @@ def from_terms(terms) -> FourierSum:
     """The FourierSum of {k: (c, d)}, k a tuple of one or two integers."""
     waves, amplitude = [], []
     for k, (c, d) in terms.items():
-        for p, phase in ((-c, QUARTER), (-d, Fraction(0)))[:2 if any(k) else 1]:
+        for p, phase in (-c, QUARTER), (-d, Fraction(0)):
             if p or phase and not d:            # one, even if both are zero
                 waves.append((*k, *(0,) * (2 - len(k)), phase))
                 amplitude.append(p)

@@ -17,7 +17,8 @@ from .._native import ffi, lib
 from ..model.dynamics import Dynamics
 from ..model.exact import Ends, root_bounds
 from ..model.map import SymplecticMap
-from ..model.potential import FourierSum, from_terms, per_period, product, two_at_most
+from ..model.potential import (FourierSum, from_terms, per_period, potential_text, product,
+                               two_at_most)
 from ..prover.native import check
 from ..storage.files import plain
 from .limits import MIN_STEP_RATIO
@@ -215,10 +216,10 @@ class Fourier(Potential):
 
     @property
     def formula(self) -> str:
-        if self.period != 1:
-            return self.sum.text("", "y")
-        text = self.sum.text("2 pi", "x")
-        return text if self.factor == "1" else "s (%s), s = %s" % (text, self.factor)
+        text = potential_text(self.sum.waves, [{"": p} for p in self.sum.amplitude], self.n,
+                              *(["x", "2 pi"] if self.period == 1 else []))
+        return text if self.period != 1 or self.factor == "1" else \
+            "s (%s), s = %s" % (text, self.factor)
 
     @cached_property
     def _bounds(self):
