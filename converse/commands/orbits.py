@@ -165,10 +165,7 @@ class _Finding:
     def _prove(self, state, pair):
         from ..orbits.proved import prove
 
-        def progress(*at):
-            self.line(lambda: "proving eps %g: %d decimal places, %d rounds" % (state.eps, *at))
-
-        proof = prove(state, progress=progress) if pair is None else pair.prove(progress=progress)
+        proof = prove(state) if pair is None else pair.prove()
         self.drawn[-1] = proof if pair is None else proof.minimum
         self.tell(proof.report())
 

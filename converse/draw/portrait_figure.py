@@ -8,6 +8,7 @@ except ImportError:                     # matplotlib brings it, and plot.check()
     np = None  # type: ignore[assignment]
 
 from ..model.exact import rounded_text, short_text
+from ..model.map import SymplecticMap
 from ..prover import tree
 from . import plot
 
@@ -70,15 +71,10 @@ def force(problem, y):
 
 
 def orbits(problem):
-    """Points (y, J), modulo 2 pi, of orbits, evenly spread at first: arrays."""
+    """Orbits of the map in the middle of the parameters, from points that are spread evenly."""
     at = (np.arange(ORBITS)[:, None] + 0.5) * [0.7548776662466927, 0.5698402909980532] % 1
-    y, J = TURN * at.T
-    found = []
-    for _ in range(STEPS):
-        J = (J - force(problem, y)) % TURN
-        y = (y + J) % TURN
-        found.append((y, J))
-    return np.concatenate(found, axis=1)
+    middle = SymplecticMap(problem.waves, problem.amplitude)
+    return [each[1:].ravel() % TURN for each in middle.orbit(*TURN * at.T, STEPS)]
 
 
 def circle(torus):

@@ -1,6 +1,6 @@
 """Images of points under a map, orbits, Jacobians and phase portraits, in doubles."""
 
-from typing import TYPE_CHECKING, Any, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Tuple
 
 from ..storage.methods import provided
 from .exact import whole_number
@@ -121,8 +121,9 @@ class Dynamics:
         return ys, Js
 
     def portrait(self, y: Any = None, J: Any = None, steps: int = 500, *, eps: float = 1.0,
-                 plane: Optional[Tuple[str, str]] = None, ax: Any = None, **style: Any) -> Any:
-        """A phase portrait: the orbits of initial points, modulo the period.
+                 ax: Any = None, **style: Any) -> Any:
+        """A phase portrait: the orbits of initial points, modulo the period; of more angles their
+        projection to the first angle and its momentum.
 
         Parameters
         ----------
@@ -132,10 +133,6 @@ class Dynamics:
             Of each orbit; backwards if negative.
         eps
             As of map().
-        plane
-            The coordinates to the right and upwards.  With one angle "y" and "J" (with a potential
-            of converse.orbits "x" and "p").  With more angles two of "y0", "y1", ..., "J0", ...,
-            by default "y0" and "J0": the portrait is a projection.
         ax
             Axes of matplotlib, which are drawn into and returned; with None a Figure is returned.
         style
@@ -148,7 +145,7 @@ class Dynamics:
         ConverseError
             matplotlib is missing.
         """
-        return provided("SymplecticMap.portrait")(self, eps, y, J, _steps(steps), plane, ax, style)
+        return provided("SymplecticMap.portrait")(self, eps, y, J, _steps(steps), ax, style)
 
     def _points(self, y, J, eps):
         """y and J as arrays of one shape, (..., n) or, with one angle, any."""

@@ -155,8 +155,7 @@ class Enclosure:
     action   -- two Fractions around the action per point less the straight orbit's
     """
 
-    def __init__(self, state, eps, tell=None):
-        self.tell, self.rounds = tell, 0        # tell(places, rounds through all points)
+    def __init__(self, state, eps):
         self.law = LAWS[state.potential.kind]
         self.potential, self.q, self.n = state.potential, state.q, state.potential.n
         self.eps, self.places = eps, None
@@ -167,7 +166,6 @@ class Enclosure:
     def evaluate(self, places):
         """Gradient, Hessian and action of the points as they are, to this number of places."""
         n, q, u = self.n, self.q, self.u
-        self.begin(places)
         if places != self.places:
             ctx.prec = bits_of(places)
             self.places, self.ulp = places, ball(Fraction(1, 10 ** places))
@@ -191,12 +189,6 @@ class Enclosure:
         self.gradient = upper(squares.upper().sqrt())
         self.action = lower(action / q), upper(action / q)
 
-    def begin(self, places):
-        """Another round through all points."""
-        self.rounds += 1
-        if self.tell is not None:
-            self.tell(places, self.rounds)
-
     def noise(self):
         """About the smallest gradient that these places can show."""
         radii = sum((square(force - force.mid()) for force in self.force), arb(0))
@@ -215,7 +207,6 @@ class Enclosure:
         links: a list that receives for each point its inverse pivot, its coupling to the first
         point, and its right-hand side, which is -force and the eliminated terms; for the last point
         the right-hand side alone."""
-        self.begin(self.places)
         zero, shift = unit(self.n, 0), unit(self.n, shift)
         before, E, F, side = zero, zero, unit(self.n), arb_mat(self.n, 1)
         for j in range(1, self.q + 1):
@@ -307,7 +298,6 @@ class Enclosure:
 
         as a norm, for every beta_j in its ball.  None: an s_j, j < q, is not positive definite, or
         the radii are too large."""
-        self.begin(self.places)
         s, shift, radii = [first], unit(self.n, shift), unit(self.n, 0)
         for j in range(1, self.q + 1):
             turned = inverse(s[-1])

@@ -14,7 +14,7 @@ largest of these minima; where they depend on it continuously, the state there i
 
 import math
 from dataclasses import dataclass
-from typing import Any, Callable, Optional, Tuple
+from typing import Any, Optional, Tuple
 
 import numpy as np
 
@@ -87,16 +87,13 @@ class Pair:
             raise ValueError("the flux is of maps with one angle; with two there is the difference "
                              "of action, .barrier")
 
-    def prove(self, digits: Optional[int] = None,
-              progress: Optional[Callable[[int, int], object]] = None) -> Any:
+    def prove(self, digits: Optional[int] = None) -> Any:
         """Proves both orbits, and encloses the difference of their actions to ten digits at least.
 
         Parameters
         ----------
         digits : int, optional
             Both orbits are known to 10^-digits at least, by default 10^-20.
-        progress : callable, optional
-            As of orbits.prove.
 
         Returns
         -------
@@ -109,7 +106,7 @@ class Pair:
             With a reason.
         """
         balls()
-        return provided("Pair.prove")(self, digits, progress)
+        return provided("Pair.prove")(self, digits)
 
 
 def gap_of(pair):

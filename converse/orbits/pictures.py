@@ -11,18 +11,6 @@ from .proved import ProvedOrbit, distances
 FEW = 300                               # points that are drawn larger
 MOST_STATES = 40                        # in a picture
 WIDTH, HEIGHT = 6.2, 3.25               # of the picture of a state, in inches
-PLOTTED = {                             # The columns of Family.plot, with the names of their axes.
-    "action": "action per point less $|p/q|^2/2$",
-    "exponents": "Lyapunov exponents",
-    "residue": "Greene's residue",
-    "deviation": "largest displacement",
-    "least": "least eigenvalue of the Hessian",
-}
-# The names of the parts of columns that have several numbers.
-PARTS = {"exponents": ("first", "second"),
-         "deviation": ("from the line through $x_0$", "from the line at $\\varepsilon = 0$")}
-SCALES = {"residue": {"value": "symlog", "linthresh": 1.0}}
-
 LABELS = ("Minimum: a local one, as far as doubles show; nothing is proved, and there may be "
           "states of less action.")
 PROVED = ("Proved: a true orbit is so near to the points drawn, before these were rounded to "
@@ -174,41 +162,27 @@ def states_picture(states, kind="svg"):
 
 # ---- families
 
-def family_plot(family, column, ax=None):
-    """A column of a family against eps: as a Figure, or drawn into ax."""
-    if column not in PLOTTED:
-        raise ValueError("there is no column %r to be drawn; there are %s"
-                         % (column, ", ".join(PLOTTED)))
+def family_plot(family, ax=None):
+    """The exponents of a family against eps: as a Figure, or drawn into ax."""
     if not len(family):
         raise ValueError("a family without states cannot be drawn")
     plot.check()
-    values = np.array([getattr(state, column) for state in family], dtype=float)
-    minima = np.array([state.label == "minimum" for state in family])
     if ax is not None:
-        return _against_eps(ax, family, column, values, minima)
+        return _against_eps(ax, family)
 
     def fill(page):
-        ax = page.subplots()
-        _against_eps(ax, family, column, values, minima)
-        first = family[0]
+        first, ax = family[0], _against_eps(page.subplots(), family)
         ax.set_title("%s, %s" % (first.potential.name, first.type_text))
-        if ax.get_legend_handles_labels()[1]:
-            ax.legend()
 
     return plot.new(5.0, 3.4, fill)
 
 
-def _against_eps(ax, family, column, values, minima):
-    eps = family.eps
-    parts = values.reshape(len(eps), -1).T
-    names = PARTS.get(column, ()) if len(parts) > 1 else ()
-    for k, (part, colour) in enumerate(zip(parts, (DARK, BLUE, VERMILLION))):
-        ax.plot(eps, part, "o-", markersize=3, color=colour, label=names[k] if names else None)
-        if not minima.all():
-            ax.plot(eps[~minima], part[~minima], "o", markersize=3, color=colour,
-                    markerfacecolor="white", label="no minimum" if k == 0 else None)
-    if column in SCALES:
-        ax.set_yscale(**SCALES[column])
-    ax.set(xlabel="ε", ylabel=PLOTTED[column])
+def _against_eps(ax, family):
+    eps, minima = family.eps, np.array([state.label == "minimum" for state in family])
+    for part, colour in zip(family.exponents.T, (DARK, BLUE)):
+        ax.plot(eps, part, "o-", markersize=3, color=colour)
+        ax.plot(eps[~minima], part[~minima], "o", markersize=3, color=colour,
+                markerfacecolor="white")
+    ax.set(xlabel="ε", ylabel="Lyapunov exponents")
     ax.xaxis.get_major_locator().set_params(nbins=6)
     return ax

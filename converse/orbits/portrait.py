@@ -27,62 +27,35 @@ def starts(n, count=STARTS):
     return (x[:, 0], p[:, 0]) if n == 1 else (x, p)
 
 
-def names(system):
-    """The names of the coordinates, angles before momenta."""
-    return [letter + str(i) * (system.dimension > 1)
-            for letter in system.letters for i in range(system.dimension)]
-
-
-def coordinates(system, eps, x, p, steps):
-    """The orbits of the points: {name: array (steps + 1, orbits), modulo the period}."""
+def portrait(system, eps, x, p, steps, ax, style):
+    """See Dynamics.portrait."""
     if (x is None) != (p is None):
         raise ValueError("give both angles and momenta, or neither")
     if x is None:
         x, p = (system.period * each for each in starts(system.dimension))
-    x, p = np.broadcast_arrays(np.asarray(x, float), np.asarray(p, float))
-    n = system.dimension
-    if n > 1 and x.shape[-1:] != (n,):
-        raise ValueError("initial points of %d angles are arrays of shape (..., %d), not %r"
-                         % (n, n, x.shape))
-    orbits = x.size // n
+    x, p = system._points(x, p, eps)
+    orbits = x.size // system.dimension
     if not 0 < orbits * (abs(steps) + 1) <= MOST:
         raise ValueError("a portrait has 1 to %d points, not %d orbits of %d"
                          % (MOST, orbits, abs(steps) + 1))
-    xs, ps = (each.reshape(abs(steps) + 1, orbits, system.dimension) % system.period
-              for each in system.orbit(x, p, steps, eps))
-    both = np.concatenate([xs, ps], axis=2)
-    return {name: both[:, :, k] for k, name in enumerate(names(system))}
-
-
-def chosen(system, plane):
-    """The plane, if it is valid: a pair of names."""
-    known = names(system)
-    plane = (known[0], known[system.dimension]) if plane is None else tuple(plane)
-    if len(plane) != 2 or plane[0] == plane[1] or not set(plane) <= set(known):
-        raise ValueError("the plane is two of %s, not %r" % (", ".join(known), plane))
-    return plane
-
-
-def portrait(system, eps, x, p, steps, plane, ax, style):
-    """See Dynamics.portrait."""
-    plane = chosen(system, plane)
     plot.check()
-    found = coordinates(system, eps, x, p, steps)
-    columns = [found[name] for name in plane]
+    columns = [each.reshape(abs(steps) + 1, orbits, system.dimension)[:, :, 0] % system.period
+               for each in system.orbit(x, p, steps, eps)]
     if ax is not None:
-        return _draw(ax, system, plane, columns, style)
+        return _draw(ax, system, columns, style)
 
     def fill(figure):
-        _draw(figure.subplots(), system, plane, columns, style)
+        _draw(figure.subplots(), system, columns, style)
 
     return plot.new(4.4, 4.4, fill)
 
 
-def _draw(ax, system, plane, columns, style):
+def _draw(ax, system, columns, style):
     ax.plot(*columns, **{**POINTS, **style})
-    period, words = system.period, PERIODS[system.period]
+    period, plane = system.period, [letter + "_0" * (system.dimension > 1)
+                                    for letter in system.letters]
     ax.set(xlim=(0, period), ylim=(0, period), aspect="equal",
-           **{side: r"$%s$  mod $%s$" % (_symbol(name), words)
+           **{side: r"$%s$  mod $%s$" % (name, PERIODS[period])
               for side, name in zip(("xlabel", "ylabel"), plane)})
     for axis in ax.xaxis, ax.yaxis:
         if period == 1:
@@ -90,9 +63,5 @@ def _draw(ax, system, plane, columns, style):
         else:
             axis.set_ticks([0, math.pi, 2 * math.pi], ["$0$", r"$\pi$", r"$2\pi$"])
     if system.dimension > 1:
-        ax.set_title("all points, projected to ($%s$, $%s$)" % tuple(map(_symbol, plane)))
+        ax.set_title("all points, projected to ($%s$, $%s$)" % tuple(plane))
     return ax
-
-
-def _symbol(name):
-    return name[0] + ("_" + name[1] if name[1:] else "")

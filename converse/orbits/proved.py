@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Callable, Optional, Tuple
+from typing import Any, Optional, Tuple
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from ..storage.methods import provided
 from .limits import (DEFAULT_DIGITS, EIGENVALUE_ROUNDING, EXPONENT_PLACES, GUARD_PLACES,
                      LEAST_RATIO, LEAST_SHARE, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
                      MAX_SHADOW, MIN_LEAST_GUESS, NULL_EIGENVALUE, SHOWN_PLACES)
-from .potential import told
 from .state import PeriodicOrbit, expected
 
 EXACT_NULL = Fraction(NULL_EIGENVALUE)
@@ -146,8 +145,7 @@ class ProvedOrbit:
         return "\n".join(lines) + "\n"
 
 
-def prove(state: PeriodicOrbit, digits: Optional[int] = None,
-          progress: Optional[Callable[[int, int], object]] = None) -> ProvedOrbit:
+def prove(state: PeriodicOrbit, digits: Optional[int] = None) -> ProvedOrbit:
     """Proves that a true orbit lies beside a state of least action.
 
     The points are made as exact as the proof needs.  Where phases are undetermined in doubles they
@@ -158,9 +156,6 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None,
     state : PeriodicOrbit
     digits : int, optional
         The radius of the result is at most 10^-digits, by default 10^-20.
-    progress : callable, optional
-        progress(places, rounds) is called with the number of decimal places that are tried, and how
-        often all points were gone through.
 
     Returns
     -------
@@ -173,7 +168,6 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None,
     """
     wanted = DEFAULT_DIGITS if digits is None else digits
     expected(state)
-    told(progress)
     if not isinstance(wanted, int) or not 1 <= wanted <= MAX_PLACES - 2 * GUARD_PLACES:
         raise ValueError("digits is a number from 1 to %d, not %r"
                          % (MAX_PLACES - 2 * GUARD_PLACES, digits))
@@ -195,7 +189,7 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None,
     most = min(MAX_PLACES, places + MAX_MORE_PLACES)
     orbit, reason = None, None
     with precision():
-        exact = Enclosure(state, Fraction(_eps(state)), progress)
+        exact = Enclosure(state, Fraction(_eps(state)))
         while True:
             try:
                 orbit = _attempt(state, exact, growth, places, wanted)

@@ -20,7 +20,6 @@ from .exponents import growth
 from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
                      MAX_STIFFNESS, SHOWN_PLACES)
 from .minimax import Pair, gap_of
-from .potential import told
 from .proved import (NotProved, ProvedOrbit, TooFewPlaces, _eps, distance_words, grown, in_units,
                      prove)
 
@@ -93,19 +92,18 @@ class ProvedPair:
         return self.minimum.report() + "\n".join(lines) + "\n"
 
 
-def prove_pair(pair, digits=None, progress=None):
+def prove_pair(pair, digits=None):
     """See Pair.prove."""
-    told(progress)
     if pair.minimax.label == "not stationary":
         raise NotProved("the pass is not stationary, its gradient is %.1e" % pair.minimax._shadow)
     most_digits = MAX_PLACES - 2 * GUARD_PLACES
     digits = DEFAULT_DIGITS if digits is None else whole_number(digits, "digits", 1, most_digits)
-    minimum, reason = prove(pair.minimum, digits, progress=progress), ""
+    minimum, reason = prove(pair.minimum, digits), ""
     first = digits + 2 * GUARD_PLACES
     last = min(first + 2 * MAX_MORE_PLACES, MAX_PLACES + 1)
     for places in range(first, last, MAX_MORE_PLACES // 5):
         with precision():
-            exact = Enclosure(pair.minimax, Fraction(_eps(pair.minimax)), progress)
+            exact = Enclosure(pair.minimax, Fraction(_eps(pair.minimax)))
             try:
                 found = _Pass(pair, minimum, exact, digits, places).proved()
             except TooFewPlaces as error:
@@ -116,7 +114,7 @@ def prove_pair(pair, digits=None, progress=None):
             return found
         reason = "the difference of action is known to %.1e only" % width
         if 2 * pair.minimum.q * (minimum.action[1] - minimum.action[0]) > most:
-            minimum = prove(pair.minimum, min(places, most_digits), progress=progress)
+            minimum = prove(pair.minimum, min(places, most_digits))
     raise NotProved("of the pass, with %d decimal places: %s" % (places, reason))
 
 

@@ -3,7 +3,7 @@
 import math
 import os
 from dataclasses import dataclass, replace
-from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple, Union, overload
+from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -61,15 +61,7 @@ class Family:
     def __len__(self) -> int:
         return len(self.states)
 
-    @overload
-    def __getitem__(self, k: int) -> PeriodicOrbit:
-        ...
-
-    @overload
-    def __getitem__(self, k: slice) -> "Family":
-        ...
-
-    def __getitem__(self, k: Union[int, slice]) -> Union[PeriodicOrbit, "Family"]:
+    def __getitem__(self, k: Union[int, slice]) -> Any:
         return Family(self.states[k]) if isinstance(k, slice) else self.states[k]
 
     def __iter__(self) -> Iterator[PeriodicOrbit]:
@@ -89,26 +81,23 @@ class Family:
         """What doubles show of each state, in lines."""
         return provided("Family.report")(self)
 
-    def plot(self, ax: Any = None, column: str = "exponents") -> Any:
-        """A measure of its states against eps, as a Figure of matplotlib, which a notebook shows.
-        Hollow points are of states in which doubles see no minimum.
+    def plot(self, ax: Any = None) -> Any:
+        """Its exponents against eps, as a Figure of matplotlib, which a notebook shows.  Hollow
+        points are of states in which doubles see no minimum.
 
         Parameters
         ----------
         ax : Axes, optional
             Where to draw; they are returned.
-        column : str
-            "exponents", "action", "residue" (of one angle), "deviation" or "least", as
-            PeriodicOrbit has them.
 
         Raises
         ------
         ValueError
-            The column or the states are missing.
+            There are no states.
         ConverseError
             matplotlib is missing.
         """
-        return provided("Family.plot")(self, column, ax)
+        return provided("Family.plot")(self, ax)
 
     def __repr__(self) -> str:
         first = self.states[0] if self.states else None

@@ -88,36 +88,26 @@ def test_a_figure_of_a_state(plane, line):
 
 # ---- families
 
-def test_columns_of_a_family(plane, line, saddle):
-    for column in pictures.PLOTTED:
-        if column == "residue":
-            continue
-        axes = Figure().subplots()
-        assert plane.plot(axes, column) is axes
-        values = np.array([getattr(state, column) for state in plane]).reshape(len(plane), -1)
-        assert len(axes.get_lines()) == values.shape[1]
-        for k in range(values.shape[1]):
-            assert np.array_equal(data(axes, k), np.column_stack([plane.eps, values[:, k]]))
-        assert axes.get_xlabel() == "ε" and axes.get_ylabel()
-    assert [line.plot(column="residue").axes[0].get_lines()[0].get_ydata()[k] for k in range(2)] \
-        == [state.residue for state in line]
-    assert plane.plot(column="exponents").axes[0].get_title() == "trig, (28, 37)/49"
-    with pytest.raises(ValueError, match="no column 'colour'.*exponents"):
-        plane.plot(column="colour")
-    with pytest.raises(ValueError, match="Greene"):
-        plane.plot(column="residue")
+def test_exponents_of_a_family(plane, line):
+    axes = Figure().subplots()
+    assert plane.plot(axes) is axes
+    for k in range(2):
+        assert np.array_equal(data(axes, 2 * k), np.column_stack([plane.eps,
+                                                                  plane.exponents[:, k]]))
+    assert axes.get_xlabel() == "ε" and axes.get_ylabel()
+    assert line.plot().axes[0].get_lines()[0].get_ydata().tolist() == line.exponents[:, 0].tolist()
+    assert plane.plot().axes[0].get_title() == "trig, (28, 37)/49"
     with pytest.raises(ValueError, match="without states"):
-        Family(()).plot(column="action")
+        Family(()).plot()
 
 
 def test_states_that_are_no_minima_are_hollow(saddle):
     family = Family((saddle, saddle.relax()))
     assert family[1].label == "minimum"
-    axes = family.plot(column="action").axes[0]
-    full, hollow = axes.get_lines()
-    assert list(full.get_ydata()) == [state.action for state in family]
-    assert list(hollow.get_ydata()) == [saddle.action]
-    assert hollow.get_markerfacecolor() == "white" and hollow.get_label() == "no minimum"
+    full, hollow = family.plot().axes[0].get_lines()[:2]
+    assert list(full.get_ydata()) == family.exponents[:, 0].tolist()
+    assert list(hollow.get_ydata()) == [saddle.exponents[0]]
+    assert hollow.get_markerfacecolor() == "white"
 
 
 def test_a_picture_of_a_proved_orbit(line):
@@ -129,7 +119,7 @@ def test_a_picture_of_a_proved_orbit(line):
 
 def test_without_matplotlib(plane, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    for draw in plane[0].plot, lambda: plane.plot(column="action"), orbits.trig.portrait:
+    for draw in plane[0].plot, plane.plot, orbits.trig.portrait:
         with pytest.raises(ConverseError, match=r"converse-kam\[plot\]"):
             draw()
 
@@ -167,18 +157,11 @@ def test_projections():
     assert "projected" in panel.get_title() and panel.get_xlabel() == "$x_0$  mod $1$"
     for k in range(30):
         assert data(panel, k) == pytest.approx(np.stack([xs[:, k, 0], ps[:, k, 0]], 1))
-    panel, = orbits.trig.portrait(x, p, 40, eps=0.01, plane=("p1", "x1")).axes
-    assert panel.get_title() == "all points, projected to ($p_1$, $x_1$)"
-    assert panel.get_xlabel() == "$p_1$  mod $1$" and panel.get_ylabel() == "$x_1$  mod $1$"
-    for k in range(30):
-        assert data(panel, k) == pytest.approx(np.stack([ps[:, k, 1], xs[:, k, 1]], 1))
 
 
 @pytest.mark.parametrize("potential, wrong, words", [
     (orbits.standard, {"y": 0.1}, "both angles and momenta"),
-    (orbits.standard, {"plane": ("x0", "p0")}, "two of x, p"),
-    (orbits.trig, {"plane": ("x0", "x0")}, "two of x0, x1, p0, p1"),
-    (orbits.trig, {"plane": "x0"}, "two of"), (orbits.trig, {"steps": 1.5}, "steps"),
+    (orbits.trig, {"steps": 1.5}, "steps"),
     (orbits.trig, {"y": [0.1], "J": [0.2]}, "shape"), (orbits.trig, {"steps": 10 ** 8}, "10000000"),
     (orbits.standard, {"y": [], "J": []}, "0 orbits"), (orbits.trig, {"eps": math.nan}, "eps")])
 def test_bad_portraits(potential, wrong, words):

@@ -449,19 +449,24 @@ def test_ctrl_c_leaves_nothing_behind(name, p, q, monkeypatch):
     state = orbits.follow(getattr(orbits, name), p, q, [1.5 if len(p) == 1 else 0.03])[0]
     asked, last = 0, None
 
-    def strike(*_):
-        nonlocal asked
-        asked += 1
-        if asked == last:
-            signal.raise_signal(signal.SIGINT)
+    def struck(function):
+        def strike(*arguments):
+            nonlocal asked
+            asked += 1
+            if asked == last:
+                signal.raise_signal(signal.SIGINT)
+            return function(*arguments)
+        return strike
 
+    for rounds in "evaluate", "_eliminate", "tube":
+        monkeypatch.setattr(Enclosure, rounds, struck(getattr(Enclosure, rounds)))
     monkeypatch.setattr(ctx, "prec", 77)
-    orbit = prove(state, progress=strike)
+    orbit = prove(state)
     assert ctx.prec == 77 and asked >= 12
     for last in range(1, asked + 1):
         asked = 0
         with pytest.raises(KeyboardInterrupt):
-            prove(state, progress=strike)
+            prove(state)
         assert (ctx.prec, asked) == (77, last)
     last = None
     assert prove(state).report() == orbit.report()
