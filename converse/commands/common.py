@@ -94,6 +94,20 @@ def seconds(text):
     raise ValueError("'%s' is not a number of seconds" % text)
 
 
+INPUT = "input file, the thesis's or JSON; standard input if it is - or left out"
+
+
+def add_files(p, kept, drawn, resumed):
+    """Adds the options -b, -r and -g of a command.
+
+    kept: what -b keeps; drawn: what -g draws; resumed: the help of -r"""
+    p.add_argument("-b", "--backup", metavar="FILE", help="keep %s in the new file FILE; "
+                   "compressed if its name ends in .gz" % kept)
+    p.add_argument("-r", "--restore", metavar="FILE", help=resumed)
+    p.add_argument("-g", "--graphics", metavar="FILE",
+                   help="draw %s in FILE: SVG, PNG or PDF by its name" % drawn)
+
+
 def add_worker_options(p, what):
     """Adds the options --jobs, --dask and --time-limit of a command that works on several `what`
     at a time."""
@@ -177,10 +191,11 @@ class ProgressLine:
 # ---- workers
 
 @contextlib.contextmanager
-def executor_of(options):
-    """The executor of the Dask cluster that --dask names, or None."""
+def workers_of(options):
+    """The keywords jobs, time_limit and executor of a run, as add_worker_options has them."""
+    given = {"jobs": options.jobs, "time_limit": options.time_limit}
     if options.dask is None:
-        yield None
+        yield given
     else:
         import logging
         try:
@@ -194,7 +209,7 @@ def executor_of(options):
             raise ConverseError("there is no Dask scheduler at %s (%s); name another address"
                                 % (options.dask, error or type(error).__name__)) from None
         try:
-            yield client.get_executor()
+            yield {**given, "executor": client.get_executor()}
         finally:
             with contextlib.suppress(Exception):        # the scheduler may be gone
                 client.close()
@@ -291,6 +306,15 @@ def ended(command, run, interrupted):
     if message:
         tell(message, command)
     return status
+
+
+def kept(options):
+    """What an interrupted run has left."""
+    file = options.restore or options.backup
+    if file is None:
+        return "nothing is kept without -b FILE"
+    return "continue with -r " + file if os.path.exists(file) and os.path.getsize(file) else \
+        "nothing was found yet"
 
 
 def command(name, parser, run, interrupted, /, **options):

@@ -1,13 +1,12 @@
 """The command: converse-map INPUT -b FILE."""
 
-import os
 import re
 import sys
 
 from ..storage import files
 from ..storage.files import ConverseError
-from .common import (MAP, SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
-                     ending, executor_of, read_problem, say)
+from .common import (MAP, SIGNALS, Parser, ProgressLine, add_files, add_worker_options,
+                     check_figure, command, ending, kept, read_problem, say, workers_of)
 
 COMMAND = "converse-map"
 FIRST_WORDS = "converse diagram "       # of the file of a diagram
@@ -47,16 +46,12 @@ def parser():
         % MAP))
     p.add_argument("input", nargs="?", metavar="INPUT", help=(
         "an input file; or a file of -b, which is described, and drawn with -g"))
-    p.add_argument("-b", "--backup", metavar="FILE", help=(
-        "keep what is proved in FILE, a new file, compressed if its name ends in .gz"))
-    p.add_argument("-r", "--restore", metavar="FILE", help=(
-        "continue the diagram in FILE, with a larger --budget"))
+    add_files(p, "what is proved", "the diagram", "continue the diagram in FILE, with a larger "
+              "--budget")
     p.add_argument("--budget", type=_budget, metavar="TIME", help=(
         "of the work of all runs on the diagram, in seconds, min or h of one core, about: it "
         "stands for a number of points of orbits, so that --jobs and the machine's speed do not "
         "change the result (default: 5min)"))
-    p.add_argument("-g", "--graphics", metavar="FILE",
-                   help="draw the diagram: SVG, PNG or PDF by name")
     add_worker_options(p, "parts of the range")
     return p
 
@@ -68,19 +63,19 @@ def progress_text(diagram):
 
 def run(options):
     check_figure(options, *filter(None, (options.input, options.backup, options.restore)))
-    kept = options.restore or options.backup
+    path = options.restore or options.backup
     if options.restore and options.backup:
         raise ConverseError("-r goes on in the file that it names; leave out -b")
     if _is_diagram(options.input):
-        if kept is not None or options.budget is not None:
+        if path is not None or options.budget is not None:
             raise ConverseError("%s: is a diagram; to continue it, give -r %s and no input" % (
                 (options.input,) * 2))
-        kept = options.input
+        path = options.input
         from ..diagram import Diagram
-        found = Diagram.load(kept)
+        found = Diagram.load(path)
     else:
-        found = _search(options, kept)
-    say(found.report(kept))
+        found = _search(options, path)
+    say(found.report(path))
     if options.graphics is not None:
         from ..draw import diagram_figure
         diagram_figure.draw(found, options.graphics)
@@ -94,7 +89,7 @@ def _is_diagram(name):
         name, "input or diagram", ": is neither an input nor a diagram").startswith(FIRST_WORDS)
 
 
-def _search(options, kept):
+def _search(options, path):
     from ..diagram import explore  # it needs the C core
 
     family, given = None, {} if options.budget is None else {"budget": options.budget}
@@ -103,23 +98,17 @@ def _search(options, kept):
         if not problem.full_torus:
             raise ConverseError("the input names a part of the torus (v0, v1); leave it out")
         family = problem.map
-    with ProgressLine(COMMAND) as line, executor_of(options) as executor:
+    with ProgressLine(COMMAND) as line, workers_of(options) as workers:
         def tell(text):
             line.clear()
             say(text + "\n")
 
-        return explore(family, path=kept, resume=options.restore is not None, jobs=options.jobs,
-                       executor=executor, time_limit=options.time_limit, tell=tell,
-                       progress=lambda diagram: line(lambda: progress_text(diagram)), **given)
+        return explore(family, path=path, resume=options.restore is not None, tell=tell,
+                       progress=lambda diagram: line(lambda: progress_text(diagram)),
+                       **workers, **given)
 
 
-def interrupted(options):
-    kept = options.restore or options.backup
-    return "continue with -r " + kept if kept and os.path.exists(kept) else \
-        "nothing was kept; keep what is proved with -b FILE"
-
-
-main = command(COMMAND, parser, run, interrupted, backup=None, restore=None)
+main = command(COMMAND, parser, run, kept, backup=None, restore=None)
 
 if __name__ == "__main__":
     sys.exit(main())

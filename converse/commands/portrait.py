@@ -3,8 +3,9 @@
 import sys
 
 from ..storage.files import ConverseError
-from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
-                     ending, executor_of, read_problem, say, whole_number)
+from .common import (INPUT, SIGNALS, Parser, ProgressLine, add_files, add_worker_options,
+                     check_figure, command, ending, kept, read_problem, say, whole_number,
+                     workers_of)
 
 COMMAND = "converse-portrait"
 COLUMNS, DEPTH, DEEPEST, MOST = 600, 15, 1000, 1 << 16
@@ -26,12 +27,9 @@ def parser():
         "A sin(k y + phase), y modulo 2 pi, has no rotational invariant circles, column by column, "
         "for all parameters of a range.  The file of the portrait is verified "
         "by converse-check."))
-    p.add_argument("input", nargs="?", metavar="INPUT", help="input file, the thesis's or JSON; "
-                   "standard input if it is - or left out; not needed with -r")
-    p.add_argument("-b", "--backup", metavar="FILE",
-                   help="keep the portrait in the new file FILE; compressed if it ends in .gz")
-    p.add_argument("-r", "--restore", metavar="FILE", help="continue the portrait FILE and "
-                   "keep its columns; a finished portrait is described, and drawn with -g")
+    p.add_argument("input", nargs="?", metavar="INPUT", help=INPUT + "; not needed with -r")
+    add_files(p, "the portrait", "the portrait, with orbits of the map,", "continue the portrait "
+              "FILE and keep its columns; a finished portrait is described, and drawn with -g")
     p.add_argument("--columns", type=whole_number(1, MOST), metavar="N",
                    help="divide the turn of x_0 into N columns (default %d)" % COLUMNS)
     p.add_argument("--depth", type=whole_number(1, DEEPEST), metavar="N",
@@ -40,8 +38,6 @@ def parser():
     p.add_argument("--lines", action="store_true", help=(
         "take vertical lines instead of strips, for any potential of one angle; nothing is proved "
         "between the lines"))
-    p.add_argument("-g", "--graphics", metavar="FILE",
-                   help="draw the portrait, with orbits of the map: SVG, PNG or PDF by name")
     p.add_argument("--rotation", metavar="ROTATION", action="append", default=[], help=(
         "prove that there is an invariant circle of this rotation number, as converse-tori does, "
         "and draw it; may be given again"))
@@ -66,12 +62,11 @@ def run(options):
 
     problem = None if options.restore else read_problem(options.input, COMMAND)
     rotations = _rotations(options.rotation)
-    with ProgressLine(COMMAND) as line, executor_of(options) as executor:
+    with ProgressLine(COMMAND) as line, workers_of(options) as workers:
         found = portray(problem, path=path, columns=options.columns or COLUMNS,
                         depth=options.depth or DEPTH, strips=not options.lines,
-                        resume=options.restore is not None, jobs=options.jobs,
-                        executor=executor, time_limit=options.time_limit,
-                        progress=lambda *done: line(lambda: progress_text(*done)))
+                        resume=options.restore is not None,
+                        progress=lambda *done: line(lambda: progress_text(*done)), **workers)
     say(found.report(path or ""))
     if options.graphics is not None:
         from ..draw import portrait_figure
@@ -112,12 +107,7 @@ def _tori(rotations, problem):
     return proved
 
 
-def interrupted(options):
-    path = options.restore or options.backup
-    return "continue with -r " + path if path else "nothing was saved; name a file with -b"
-
-
-main = command(COMMAND, parser, run, interrupted, restore=None, backup=None)
+main = command(COMMAND, parser, run, kept, restore=None, backup=None)
 
 if __name__ == "__main__":
     sys.exit(main())

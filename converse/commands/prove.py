@@ -5,15 +5,14 @@ import contextlib
 import math
 import os
 import sys
-import time
 from dataclasses import fields
 
 from ..prover.settings import AS_PRINTED, REGION, SETTINGS, THEOREM, UNDECIDED, Settings
 from ..storage import files
 from ..storage.files import ConverseError
-from .common import (MAP, REFRESH_SECONDS, SIGNALS, TOGETHER, Parser, ProgressLine,
-                     add_worker_options, check_figure, command, ending, executor_of, number,
-                     read_problem, say, tell, whole_number)
+from .common import (INPUT, MAP, SIGNALS, TOGETHER, Parser, ProgressLine, add_files,
+                     add_worker_options, check_figure, command, ending, kept, number, read_problem,
+                     say, tell, whole_number, workers_of)
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
 ENDING = ending(
@@ -51,17 +50,10 @@ def parser():
     p = Parser(prog="converse", epilog=ENDING, description=(
         "Tries to prove that %s, has no invariant torus, for all parameters of a range at a time."
         % MAP))
-    p.add_argument("input", nargs="?", help="input file, the thesis's or JSON; standard input if "
-                   "it is - or left out; not needed with -r")
-    p.add_argument("-b", "--backup", metavar="FILE",
-                   help="save progress to the new file FILE; when the run ends, it is the proof "
-                   "file")
-    p.add_argument("-r", "--restore", metavar="FILE",
-                   help="continue the run whose backup is FILE, with the input and the settings "
-                   "of that run, except that -d may be larger; FILE is kept up to date, unless -b "
-                   "names another")
-    p.add_argument("-g", "--graphics", metavar="FILE",
-                   help="draw the prisms in FILE: SVG, PNG or PDF by its name")
+    p.add_argument("input", nargs="?", help=INPUT + "; not needed with -r")
+    add_files(p, "the proof, also an unfinished one,", "the prisms", (
+        "continue the run whose file is FILE, with the input and the settings of that run, except "
+        "that -d may be larger; FILE is kept up to date, unless -b names another"))
     p.add_argument("-t", "--verbose", action="store_true",
                    help="print a line for every decided prism, after the search")
     for each in fields(Settings):
@@ -95,40 +87,14 @@ def _leaf_lines(proof):
                 LEAF_WORDS.get(leaf.kind, "linked"), centre, half, leaf.depth)
 
 
-class Progress:
-    """Prints the header when the search begins, and then shows in the line how much was done, how
-    fast, and the share of parameters times torus.  No remaining time is shown: estimated from the
-    prisms so far, proofs turned out six times as long, or half as long."""
-
-    def __init__(self, options, line):
-        self.options, self.line = options, line
-        self.begun = None                   # the proof as it is before the search
-        self.before = 0                     # prisms proved before this run
-
-    def begin(self, proof):
-        """Called by prove() before the search."""
-        self.begun, self.before = proof, proof.counts.proved
-
-    def __call__(self, examined, counts):
-        """Called by prove() as the search goes on."""
-        if not self.options.begun:
-            self.options.begun = True
-            from ..prover import report
-            if self.begun.as_printed:
-                tell("--as-printed is a historical reconstruction, not a proof")
-            say(report.header(self.begun))
-        self.line(lambda: self._words(examined, counts))
-
-    def _words(self, examined, counts):
-        rate = (counts.proved - self.before) / max(REFRESH_SECONDS,
-                                                   time.monotonic() - self.line.began)
-        return "%s prisms proved, %s/s; %.2f%% of parameters x torus done%s" % (
-            format(counts.proved, ","), format(round(rate), ","), math.floor(1e4 * examined) / 100,
-            ", %d undecided" % counts.undecided if counts.undecided else "")
+def progress_text(examined, counts):
+    return "%s prisms proved; %.2f%% of parameters x torus done%s" % (
+        format(counts.proved, ","), math.floor(1e4 * examined) / 100,
+        ", %d undecided" % counts.undecided if counts.undecided else "")
 
 
 def run(options):
-    from ..prover.report import verdict
+    from ..prover.report import report
     from ..prover.run import prove  # it needs the C core, and says so where it is missing
 
     if options.x2 is not None:
@@ -151,32 +117,21 @@ def run(options):
     elif options.input or options.together:
         raise ConverseError("-r continues a run as it was asked for; leave out the input and "
                             "--together")
-    with ProgressLine() as line, executor_of(options) as executor:
-        progress = Progress(options, line)
-        proof = prove(problem, xstar=options.xstar, jobs=options.jobs, executor=executor,
-                      backup=options.backup, resume=options.restore,
-                      time_limit=options.time_limit, on_begin=progress.begin,
-                      progress=progress, **given)
-        if not options.begun:           # the time limit came before the search
-            progress(0.0, proof.counts)
+    with ProgressLine() as line, workers_of(options) as workers:
+        proof = prove(problem, xstar=options.xstar, backup=options.backup, resume=options.restore,
+                      progress=lambda *at: line(lambda: progress_text(*at)), **workers, **given)
+    if proof.as_printed:
+        tell("--as-printed is a historical reconstruction, not a proof")
     for line in _leaf_lines(proof) if options.verbose else ():
         say(line)
-    say(verdict(proof, options.backup or options.restore or ""))
+    say(report(proof, options.backup or options.restore or ""))
     if options.graphics is not None:
         from ..draw import plot
         plot.write(proof, options.graphics)
     return STATUS[proof.conclusion]
 
 
-def interrupted(options):
-    file = options.backup or options.restore
-    if file is None:
-        return "without -b nothing is kept"
-    return "continue with -r " + file if options.begun else "nothing was found yet"
-
-
-main = command("converse", parser, run, interrupted, backup=None, restore=None, begun=False,
-               stdin=None)
+main = command("converse", parser, run, kept, backup=None, restore=None, stdin=None)
 
 if __name__ == "__main__":
     sys.exit(main())

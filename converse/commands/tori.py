@@ -8,8 +8,8 @@ import time
 
 from ..storage import files
 from ..storage.files import ConverseError, plain
-from .common import (MAP, SIGNALS, TOGETHER, Parser, ProgressLine, check_figure, command, ending,
-                     number, read_problem, say, seconds, tell, whole_number)
+from .common import (INPUT, MAP, SIGNALS, TOGETHER, Parser, ProgressLine, add_files, check_figure,
+                     command, ending, number, read_problem, say, seconds, tell, whole_number)
 
 COMMAND = "converse-tori"
 ENDING = ending(
@@ -40,24 +40,18 @@ def parser():
     p = Parser(prog=COMMAND, epilog=ENDING, description=(
         "Finds an invariant torus, a graph J = P + S'(y), of %s, in floating-point numbers, and "
         "proves that there is one near it." % MAP))
-    p.add_argument("input", nargs="?", metavar="FILE", help="input file, the thesis's or "
-                   "JSON; standard input if it is - or left out; one parameter may have a range")
+    p.add_argument("input", nargs="?", metavar="FILE",
+                   help=INPUT + "; one parameter may have a range")
     p.add_argument("--rotation", metavar="ROTATION", help=(
         "the rotation vector in turns: decimals, near which a vector with good small divisors is "
         "taken, such as 0.2077 or '0.2742, 0.2802'; a continued fraction, such as '[0; 4, 1, 4, "
         "...]', that ends in ones; golden, silver, spiral, seven, T49, V1, V2; or a polynomial "
         "and elements of the field of its largest real root t, such as 't^2+t-1: t'; default: that "
         "of the most regular orbits whose torus has the fewest modes"))
-    p.add_argument("--together", action="store_true",
-                   help=TOGETHER)
-    p.add_argument("-b", "--backup", metavar="FILE",
-                   help="write the certificate to the new file FILE; compressed if it ends in .gz. "
-                        "FILE.found has the torus until it is proved")
-    p.add_argument("-g", "--graphics", metavar="FILE",
-                   help="draw the torus in FILE: SVG, PNG or PDF by its name")
-    p.add_argument("-r", "--restore", metavar="FILE",
-                   help="start the search from the torus of the certificate FILE, which also gives "
-                        "the rotation vector, and not from the map without potential")
+    p.add_argument("--together", action="store_true", help=TOGETHER)
+    add_files(p, "the certificate", "the torus", (
+        "start the search from the torus of the certificate FILE, which also gives the rotation "
+        "vector, and not from the map without potential"))
     p.add_argument("--margin", type=_positive, metavar="X", help="find a torus whose residual is X "
                    "times smaller than the admissible residual (about; default 100)")
     p.add_argument("--points", type=whole_number(16, MOST_POINTS), metavar="N",

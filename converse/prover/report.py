@@ -33,24 +33,20 @@ KEYWORDS = {                            # of prove(), by the command's flags
 REASONS = (report_1989.REASONS[0], "the prism was too large", *report_1989.REASONS[2:])
 
 
-def header(proof):
-    """The lines that are printed before the search: with the sharper method none."""
-    return report_1989.header(proof.problem, proof.as_printed) if proof.method == "thesis" else ""
+def report(proof, file=None):
+    """The whole report.  file: as in verify_text."""
+    return verdict(proof, file) if proof.method != "thesis" else \
+        report_1989.header(proof.problem, proof.as_printed) + verdict(proof, file)
 
 
 def verdict(proof, file=None):
-    """The conclusion, and what it rests on.  file: as in verify_text."""
+    """The conclusion, and what it rests on."""
     if proof.method == "thesis":
         return _advised(report_1989.verdict(proof), file)
     lines = _theorem(proof) if proof.all_decided else _undecided(proof, file)
     for label, text in _grounds(proof, file):
         lines += labelled(label, text)
     return "\n".join(lines) + "\n"
-
-
-def report(proof):
-    """The whole report, for a Python program."""
-    return header(proof) + verdict(proof)
 
 
 def _advised(text, file):

@@ -41,7 +41,6 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
           jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
           backup: Optional[Path] = None, resume: Union[Proof, Path, None] = None,
           time_limit: float = math.inf,
-          on_begin: Optional[Callable[[Proof], None]] = None,
           progress: Optional[Callable[[float, Counts], None]] = None, **settings: Any) -> Proof:
     """Tries to prove that a map, or a family of maps, has no invariant tori.
 
@@ -66,8 +65,6 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
         another.
     time_limit : float
         Seconds of this run, on the clock, after which, about, the search is left as it is.
-    on_begin : callable, optional
-        on_begin(proof) is called once, with the proof as it is before the search.
     progress : callable, optional
         progress(examined, counts) is called a few times a second.  `examined`, from 0 to 1, is the
         share of parameters and angles in prisms that are proved, skipped or given up.  It never
@@ -115,11 +112,8 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *,
         if resume is not None:
             proof = resume if isinstance(resume, Proof) else Proof.load(resume)
             before = continued(proof, name, given)
-        before = ready(before)
-        if on_begin is not None:
-            on_begin(before)
         try:
-            return _Run(before, backup_file, pool, progress).run()
+            return _Run(ready(before), backup_file, pool, progress).run()
         except native.WrongTree as error:
             raise ConverseError("%s: %s; use an intact copy or start anew"
                                 % (name, error)) from None

@@ -409,7 +409,7 @@ def test_without_a_terminal_a_line_a_minute_tells_the_progress(run, sample, monk
     lines = run(sample)[2].splitlines()
     assert len(lines) > 1
     for line in lines:
-        assert re.match(r"converse: 0:\d\d:\d\d [\d,]+ prisms proved, .* x torus done", line)
+        assert re.match(r"converse: 0:\d\d:\d\d [\d,]+ prisms proved; .* x torus done", line)
 
 
 def test_the_default_method_is_one_that_can(run, root):

@@ -232,7 +232,7 @@ def test_help_and_version(run):
     (["trig", SMALL, "0.01", "--points", "DIR/a.json"], "ends in .npz"),
     (["trig", SMALL, "0.01", "--points", "DIR/other.npz"], "exists and is not"),
     (["trig", SMALL, "0.01", "--points", "DIR/no/x.npz"], "cannot be written"),
-    (["trig", SMALL, "0.01", "-g", "DIR/x.ps"], ".svg or .png or .pdf"),
+    (["trig", SMALL, "0.01", "-g", "DIR/x.svg"], ".svg or .png or .pdf"),
     (["trig", SMALL, "0.01", "-g", "DIR/other.svg"], "not a figure of this program"),
     (["trig", SMALL, "0:0.04:0.0001", "-g", "DIR/x.svg"], "states at most"),
     (["DIR/terms.json", "1/3", "0.01", "--points", "DIR/terms.json"], "overwrite"),

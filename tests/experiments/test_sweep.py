@@ -1,7 +1,7 @@
 """Sweeps: the same bytes whoever computes them and however often they were interrupted."""
 
-import importlib.util
 import csv
+import importlib.util
 import io
 import math
 import os

@@ -297,7 +297,7 @@ def test_zero_half_widths(tmp_path):
                           (Fraction(0),) * 5)
     result = prove(spot, depth=2, method="thesis")
     assert set(result.tree) <= set("01PSU")
-    plot.write(result, tmp_path / "spot.ps")
+    plot.write(result, tmp_path / "spot.svg")
 
 
 # ---- what a proof says of itself ---------------------------------------------------------

@@ -125,7 +125,7 @@ def test_interrupt(held, command, sample, output, tmp_path, number):
         out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 128 + number
     assert err.decode() == "converse: interrupted; continue with -r %s\n" % backup
-    assert "Parameters :" in out.decode() and "I find" not in out.decode()
+    assert out == b""
     half = Proof.load(backup)
     assert half.tree and not half.no_tori
     status, out, err = command("-r", backup)
@@ -208,7 +208,6 @@ def test_interrupt_without_backup(held, sample):
 def test_closed_pipe(held, sample, tmp_path):
     backup = tmp_path / "backup"
     with held("-p20", "-b", backup, sample) as (process, sign):
-        assert process.stdout.readline() == b"Parameters :\n"
         process.stdout.close()
         sign.unlink()
         err = process.stderr.read().decode()
