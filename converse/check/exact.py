@@ -381,7 +381,7 @@ def attempt(prism, l, penalties):
     why = why or "the orbit of its centre contradicts nothing over %d points, %s" % (
         sum(map(len, sites)), "the most that are followed" if max(map(len, sites)) >= MAX_SITES else
         "beyond which it is too uncertain")
-    if moved is None and not any([lane.ended for lane in prism.lanes]):
+    if moved is None and not any(lane.ended for lane in prism.lanes):
         return why, None
     # Symbols that move the ends count a little: when they are halved, the orbit may go on.
     ends = [sum([lane.moved(i) for lane in prism.lanes]) / one for i in range(prism.symbols)]

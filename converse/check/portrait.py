@@ -147,7 +147,8 @@ def read_region(name, text, patch, strip):
             else:
                 lost[cuts[0] + (cuts[STRIP_AXIS] if strip else 0)] += 1
             if cuts[1] or any(cuts[2 + count:]):
-                raise Rejected("the tree cuts an angle or a parameter that there is not")
+                raise Rejected("the tree cuts an angle or a parameter that there is not, above "
+                               "node %d" % at)
     proved, undecided = map(claim.tree.count, "PU")
     claim.counts.update(cuts=proved + undecided - 1, proved=proved, symmetric=0, linked=0,
                         undecided=undecided, most_cuts=most_cuts, depth=deepest,

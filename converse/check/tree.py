@@ -63,8 +63,10 @@ def tree_counts(claim, letters=""):
     """Counts the nodes of the tree; Rejected, if it is not whole and decided."""
     total = most_cuts = deepest = 0
     known = {*ANGLE_AXES[:len(claim.half)], *range(2, 2 + claim.parameters)}
-    if any(letter in claim.tree for axis, letter in enumerate(AXES) if axis not in known):
-        raise Rejected("the tree cuts an angle or a parameter that there is not")
+    if wrong := [claim.tree.index(letter) for axis, letter in enumerate(AXES)
+                 if axis not in known and letter in claim.tree]:
+        raise Rejected("the tree cuts an angle or a parameter that there is not, at node %d"
+                       % min(wrong))
     for position, (_, cuts) in leaves(claim.tree, kinds="PSU" + letters):
         total, depth, kind = total + 1, sum(cuts), claim.tree[position]
         if kind == "U":

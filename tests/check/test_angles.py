@@ -145,10 +145,12 @@ def test_wrong_files_of_three_angles(proof, run):
 
 
 def test_a_cut_of_v2_in_a_file_of_two_angles(run):
+    """It is named by its place."""
     text = file_of("5PP", ["1 0 0 0.99"], [(Fraction(0), Fraction(2))] * 2, "1 1", "1 0 0 1",
                    angles=None)
     status, out, err = run(text)
-    assert (status, out) == (1, "") and "cuts an angle or a parameter that there is not" in err
+    assert (status, out) == (1, "")
+    assert "cuts an angle or a parameter that there is not, at node 0" in err
 
 
 def test_parts_of_three_angles(run):
