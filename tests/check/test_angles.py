@@ -242,6 +242,7 @@ def test_matrices(n):
         values = np.linalg.eigvalsh(np.array(rows, float))
         size = abs(values).max() + 1
         assert values[-1] - 1e-9 * size <= check.largest(d) <= values[-1] + 0.1 * size
+        assert values[-1] / 2 ** 40 - 1e-9 <= check.largest([x >> 40 for x in d])   # to a unit
         low = check.least([float(x) for x in d])
         assert abs(low - values[0]) < 0.1 * size
         if det:

@@ -488,6 +488,7 @@ def test_counts(texts, run, name):
     ("xstar", "0.8 0.82773291385109182", "symmetric"), ("xstar", "0 0", "not excluded"),
     ("xstar", "-0.8 -0.8", "not excluded"), ("xstar", "1e300 1e300", "arithmetic"),
     ("c", "1e999 0", "out of range"), ("v0", "1 1e301", "out of range"),
+    ("v0", "-1e301 1", "out of range"),
     ("kind", "as printed, not a proof", "not meant as a proof"), ("depth", "11", "depth"),
     ("kind", "Sound", "not meant"), ("a", "0.3085 0.00125 0", "wave 1"),
     ("v0", "1", "two decimal")])
@@ -2574,6 +2575,11 @@ def test_least_pivot_to_the_last_unit(texts, generator, monkeypatch):
             found = dict(zip([wave.k for wave in claim.examined], amplitudes))
             B = bound([found.get(k, 0) for k in check.THESIS])
             assert 0 < l < 1 and l * l - B * l + 1 >= 0         # l is at most the lesser root
+    criterion = check.Criterion(claim_of(with_field(with_tree(text, "2PP"), "together", "yes")))
+    one = criterion.fixed.one           # B between two ends that differ by a unit, where it counts
+    criterion.B_at = [2 * one + (one >> 14), 2 * one + (one >> 14) + 1]
+    l = Fraction(criterion.least_pivot(((0,) * 6, (0, 0, 1, 0, 0, 0))), one)
+    assert l * l - l * (sum(map(Fraction, criterion.B_at)) / 2 / one) + 1 >= 0
 
 
 def test_parameters_without_an_eigenvalue_above_2(texts, run):
