@@ -93,7 +93,7 @@ TESTS = {
     "check/proof_file": ["test_check.py: header or numbers or trees or theorem or potentials or "
                          "versions or at_once", *PARTS],
     "check/torus": ["test_check.py: bound_over or at_once", "check/test_exact.py: few_bits"],
-    "check/tree": ["test_check.py: trees or flipped or mirror or counts or symmetric or "
+    "check/tree": ["test_check.py: trees or flipped or mirror or header or symmetric or "
                    "coefficients or halved", *PARTS],
     "tori": TORI, "tori/field": ["test_rotation.py", *TORI],
 }
