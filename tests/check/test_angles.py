@@ -103,18 +103,18 @@ def test_a_region_that_is_too_short_is_a_part(proof, run, axis):
         assert "(no other y' was examined, and the region is not the full torus)" in out
 
 
-def test_periods_against_points():
+@pytest.mark.parametrize("n", (2, 3))
+def test_periods_against_points(n):
     """Boxes of the periods hold each point of the torus once, of frames of all sorts."""
-    draw = random.Random(3)
-    shifts = 2 * np.array([*itertools.product(range(-9, 10), repeat=3)]).T
-    tried = 0
+    draw, tried = random.Random(3), 0
+    shifts = 2 * np.array([*itertools.product(range(-9, 10), repeat=n)]).T
     while tried < 12:
-        rows = [[draw.randint(-2, 2) for _ in "012"] for _ in "012"]
+        rows = [[draw.randint(-2, 2) for _ in range(n)] for _ in range(n)]
         F = np.array(rows, float)
         if not 0.5 < abs(np.linalg.det(F)) < 9:
             continue
         P = np.array([float(x) for x in check.periods(rows)])[:, None]
-        assert math.isclose(np.prod(P), 8 / abs(np.linalg.det(F)))
+        assert math.isclose(np.prod(P), 2 ** n / abs(np.linalg.det(F)))
         lattice = np.linalg.solve(F, shifts)
         for _ in range(20):
             v = np.array([[draw.uniform(0, float(x))] for x in P[:, 0]]) + lattice

@@ -6,12 +6,10 @@ import contextlib
 import dataclasses
 import itertools
 import math
-import random
 import re
 from fractions import Fraction
 
 import pytest
-from test_check import definite, mp, real
 from test_parts import OTHER, XSTAR, file_of, replaced, run  # noqa: F401
 
 from checker import check
@@ -297,32 +295,3 @@ def test_shifts_that_sweep_over_orbits_that_minimize(run, part, shifts, status):
         assert " pi at the parameters' middle, amplitudes in" in found[2]
 
 
-@pytest.mark.slow
-def test_no_orbit_of_a_proved_leaf_minimizes(both, idle):
-    """Random points of leaves of parts that move: their true orbits; and, of linked leaves, what a
-    graph's map may do to them is in the region of the part, for the same parameters."""
-    draw, linked = random.Random(5), 0
-    for link in (both, idle):
-        claim = check.content(file_of(**link).encode())
-        check.check_tree(claim)
-        criterion, waves = check.Criterion(claim), [(wave.k, 0) for wave in claim.waves]
-        for part in (claim, *claim.parts):
-            cells = [(part.tree[at], cell) for at, cell in check.leaves(part.tree, kinds="Pab")]
-            for kind, cell in draw.sample(cells, min(25, len(cells))) + [
-                    leaf for leaf in cells if leaf[0] != "P"] * 20:
-                u0, u1, *t = [Fraction(2 * i + draw.choice((0, 1, 2)), 1 << n) - 1
-                              for i, n in zip(*cell)][:2 + claim.parameters]
-                v = [c + h * u + s for c, h, u, s in zip(part.centre, part.half, (u0, u1),
-                                                         sums(part.shifts, t))]
-                if kind == "P":
-                    x1 = [real(v[0] + v[1]) * mp.pi, real(v[0] - v[1]) * mp.pi]
-                    assert not definite([real(wave.at(t)) for wave in claim.waves],
-                                        [real(x) for x in part.xstar], x1, 60, waves=waves)
-                    continue
-                there = claim.parts["ab".index(kind)]
-                moved = check.displacement(criterion, cell, part.xstar, there.xstar)
-                for x, ends, c, h, s in zip(v, moved, there.centre, there.half,
-                                            sums(there.shifts, t)):
-                    assert all(abs(x + d - c - s) <= h for d in ends)
-                linked += 1
-    assert linked >= 60

@@ -228,75 +228,6 @@ FRAMES = [(1, 0, 0, 1), (0, 1, 1, 0), (1, 1, 1, -1), (2, 1, 1, 1), (2, 0, 0, 3),
           (3, 3, -1, 1), (2, -3, 3, 2), (-1, 6, 1, 3), (5, 2, 1, -2)]
 
 
-@pytest.mark.parametrize("frame", FRAMES)
-def test_periods_against_points(frame):
-    """A box of the lengths that the page says holds each point of the torus, and 1% less along
-    either axis does not."""
-    draw, f = random.Random(str(frame)), np.reshape(frame, (2, 2)).astype(float)
-    g, det = math.gcd(frame[1], frame[3]), abs(round(np.linalg.det(f)))
-    shifts = np.linalg.solve(f, 2 * np.mgrid[-40:41, -40:41].reshape(2, -1)).T
-    lengths = Fraction(2 * g, det), Fraction(2, g)
-
-    def holds(box, x):
-        v = x + shifts
-        return bool(((v >= 0) & (v <= np.array(box, float))).all(axis=1).any())
-
-    for shrink in ((1, 1), (Fraction(99, 100), 1), (1, Fraction(99, 100))):
-        box = [Fraction(math.ceil(length * s * 10 ** 9), 10 ** 9)
-               for length, s in zip(lengths, shrink)]
-        points = [np.array([draw.uniform(0, float(x)) for x in lengths]) for _ in range(25)]
-        points += [np.array([float(x) * 0.995 for x in lengths])]
-        whole = all(holds(box, point) for point in points)
-        assert whole == (shrink == (1, 1))
-        text = file_of("P", *(ranged(0, x) for x in box), frame=" ".join(map(str, frame)),
-                       waves=["1 0 0 0.3", "0 1 0 0.4"], xstar="20 30")
-        assert (check.symmetries_used(claim_of(text)) is not None) == whole
-
-
-@pytest.mark.parametrize("t", [(-1, -1), (0.3, 1)])
-def test_reversal_and_exchange_map_orbits_to_orbits(t):
-    """Of any x[1], in v: by the lattice, the reversal and the exchange a point of the region, and
-    its orbit has the second variation of the first."""
-    draw, f = random.Random(7), np.array([[1, 1], [1, -1]])
-    amplitudes = [0.225 + 0.001 * t[0], 0.225 + 0.001 * t[1], 0.45]
-    low, high = c0_of(file_of("P", waves=APART))
-
-    def force(x, p):
-        a, b, c = p[0] * math.cos(x[0]), p[1] * math.cos(x[1]), p[2] * math.cos(x[0] + x[1])
-        return np.array([a + c, b + c])                 # -V'
-
-    def betas(v, p):
-        x = [np.array([0.858, 0.858]), math.pi * f @ v]
-        for _ in range(6):
-            x.append(2 * x[-1] - x[-2] + force(x[-1], p))
-        for _ in range(6):
-            x.insert(0, 2 * x[0] - x[1] + force(x[0], p))
-        return [tuple(np.array(p) * np.sin([y[0], y[1], y[0] + y[1]])) for y in x[1:-1]]
-
-    for _ in range(40):
-        v, p = np.array([draw.uniform(-3, 3) for _ in "01"]), amplitudes
-        before = betas(v, p)
-        x = np.array([0.858, 0.858])
-        c = np.linalg.solve(f, x + force(x, p) / 2) / math.pi
-        assert low - 1e-9 <= c[0] <= high + 1e-9
-        n = math.floor(v[0] - c[0] + 0.5)
-        v = v - n * np.array([1, 1])                    # (P0, 1) is in the lattice
-        reverse = v[0] < c[0]
-        if reverse:
-            v = 2 * c - v
-        v[1] -= 2 * math.floor(v[1] / 2 + 0.5)
-        exchange = v[1] < 0
-        if exchange:
-            v, p = v * [1, -1], [p[1], p[0], p[2]]
-        assert low <= v[0] <= high + 0.5 and 0 <= v[1] <= 1
-        after = betas(v, p)[::-1 if reverse else 1]
-        if exchange:
-            after = [(b, a, c) for a, b, c in after]
-        # The orbits are known from x[-5] to x[6] and from x[5] to x[-6].
-        before, after = (before[:-1], after[1:]) if reverse else (before, after)
-        assert np.allclose(before, after, atol=1e-6)
-
-
 def test_one_coordinate_alone(run):
     """The other's waves do not move c0, and its x* is not looked at."""
     waves, xstar = ["1 0 0 1.8 0.1", "0 1 0 0.01 0.01"], "1.5707963267948966 0"
@@ -472,33 +403,6 @@ def test_the_bound_of_beta_with_few_bits():
         claim = claim_of(file_of("P", waves=["1 0 %s %s" % (phase, p)]))
         most, *others = check.upper_beta(claim, fixed, check.ROOT, (Fraction(x), 0), (0, 0))
         assert 2 - p * math.sin(x + math.pi * phase) <= most and others == [0, 2]
-
-
-def test_displacements_on_a_torus():
-    """f of the golden circle of the standard map at k = 0.5, by a long periodic orbit, which all
-    but lies on it: f(y) - f(x) is within the bound for many pairs of its points."""
-    k, p, q = 0.5, 55, 89
-    x = 2 * math.pi * p / q * np.arange(q) + 0.1
-    turn = 2 * math.pi * p
-    for _ in range(9):                  # Newton
-        ahead, back = np.append(x[1:], x[0] + turn), np.append(x[-1] - turn, x[:-1])
-        residual = 2 * x - ahead - back + k * np.cos(x)     # V = -k sin x
-        hessian = np.diag(2 - k * np.sin(x))
-        hessian -= np.roll(np.eye(q), 1, axis=0) + np.roll(np.eye(q), -1, axis=0)
-        # Along the torus the action is as good as constant: no step is made there.
-        x = x - np.linalg.lstsq(hessian, residual, rcond=1e-12)[0]
-    assert abs(residual).max() < 1e-9
-    order = np.argsort(x % (2 * math.pi))
-    here = x[order] % (2 * math.pi)
-    there = (np.append(x[1:], x[0] + turn) - x)[order] + here
-    text = file_of("P", "1 1", "1 1", waves=["1 0 0 %s" % k], frame="1 0 0 1", xstar="1 0")
-    criterion, draw = check.Criterion(claim_of(text)), random.Random(1)
-    for _ in range(60):
-        i = draw.randrange(q - 40)
-        j = i + draw.randint(1, 40)
-        (low, high), _ = check.displacement(criterion, check.ROOT, *[
-            (Fraction(here[n]), Fraction(0)) for n in (i, j)])
-        assert low < (there[j] - there[i]) / math.pi < high
 
 
 # ---- parts that stand for their mirror images
