@@ -266,13 +266,6 @@ def test_certificates_that_are_changed(root, run, name, expected, pattern, new):
 
 FIRST = "1 0 " + GOLDEN[0]
 SECOND = "2 0 " + GOLDEN[1]
-BAD_BYTES = {
-    "cut off": sealed(BODY)[:-40], "no end": sealed(BODY)[:-4],
-    "more after the end": sealed(BODY) + "\n",
-    "a number changed": sealed(BODY).replace("0.5", "0.4"), "nothing": "converse torus 1\n",
-    "CR LF": sealed(BODY).replace("\n", "\r\n"),
-    "two ends": sealed(BODY) + sealed(BODY), "no tori": sealed(BODY.replace("tori:\n", "")),
-}
 BAD_TEXT = [            # what makes another claim, or none; test_fuzz.py has what is no word of it
     ("dimension: 1", "dimension: 3"), ("dimension: 1", "dimension: 2"), ("dimension: 1\n", ""),
     ("dimension: 1", "dimension: 1\ndimension: 1"), ("program: by hand", "author: me"),
@@ -306,29 +299,6 @@ TOO_MUCH = [
     ("wave: 1 0 0 0.5", "wave: 1 0 0 1e301"), ("rotation: 0 1", "rotation: 0 1e300"),
     ("rotation: 0 1", "rotation: 0 1/%d" % 10 ** 300),
 ]
-# Each would be a false claim, or one that this torus is no proof of.
-FALSE = {
-    "a coefficient": (FIRST, "1 0 " + " ".join("%x" % (int(x, 16) + (1 << 31))
-                                               for x in GOLDEN[0].split())),
-    "the amplitude": ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5005"),
-    "its sign": ("wave: 1 0 0 0.5", "wave: 1 0 0 -0.5"),
-    "a phase": ("wave: 1 0 0 0.5", "wave: 1 0 1e-3 0.5"),
-    "one more wave": ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5\nwave: 2 0 0 1e-3"),
-    "a wave twice as fast": ("wave: 1 0 0 0.5", "wave: 1 0 0 0\nwave: 2 0 0 0.5\nwave: 1 0 0 1e-9"),
-    "another rotation": ("rotation: 0 1", "rotation: 1/1000 1"),
-    "twice the rotation": ("rotation: 0 1", "rotation: 0 2"),
-    "another field": ("polynomial: -1 1 1", "polynomial: -2 2 1"),
-    "fewer bits": ("piece 0 0 40", "piece 0 0 41"),
-    "no modes at all": (modes_text(GOLDEN), ""),
-    "a torus that is none": ("wave: 1 0 0 0.5", "wave: 1 0 0 5"),
-}
-
-
-@pytest.mark.parametrize("name", BAD_BYTES)
-def test_bytes_that_are_not_whole_are_rejected(run, name):
-    status, out, err = run(BAD_BYTES[name])
-    assert (status, out) == (1, "") and err.startswith("converse-check: FILE: rejected: "), err
-    assert err.count("\n") == 1
 
 
 @pytest.mark.parametrize("change, expected, word", [
@@ -405,7 +375,7 @@ def test_the_facts_of_a_check_are_values(tmp_path):
     assert "Residual : %s, admissible: " % tori.scientific(fact.residual) in result.text
     assert fact.modes > len(GOLDEN) and fact.bits > 20 and 1.82 < fact.gamma < 1.8641
     assert 1 < fact.constants.l < 10
-    path.write_text(changed(*FALSE["a coefficient"]))
+    path.write_text(changed("wave: 1 0 0 0.5", "wave: 1 0 0 0.5005"))
     with pytest.raises(check.NotConfirmed) as caught:
         check.verify(path)
     assert caught.value.residual > caught.value.needed > 0
@@ -422,23 +392,6 @@ def test_pieces_are_verified_by_processes(root, tmp_path):
     with pytest.raises(check.NotConfirmed, match="^piece 1 of 2: the error") as caught:
         check.verify(tmp_path / "wrong", jobs=2)
     assert caught.value.residual > caught.value.needed > 0
-
-
-@pytest.mark.parametrize("name", FALSE)
-@pytest.mark.slow
-def test_what_is_false_is_not_confirmed(run, name):
-    old, new = FALSE[name]
-    text = changed(old, new) if new else sealed(HEADER % 0)
-    status, out, err = run(text)
-    assert (status, out) == (5, "") and "not confirmed: the error of the torus" in err or \
-        "not confirmed: no approximate inverse" in err, err
-
-
-def test_other_versions_and_files_are_said_to_be_so(run):
-    for text, why in ((sealed(BODY.replace("torus 1", "torus 2")), "another version"),
-                      ("converse tori 1\n", "is not a proof file")):
-        status, out, err = run(text)
-        assert (status, out) == (2, "") and why in err
 
 
 # ---- the field and the divisors

@@ -254,23 +254,6 @@ def test_a_pair_of_modes_that_is_lost_counts(seed):
         assert 1 <= off <= found.radius / unit_of(ring) * (1 + ROUGH)
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_a_pair_of_modes_that_a_smaller_limit_loses_counts(seed):
-    """The least limit is taken: all pairs are lost except that of the means."""
-    rng = random.Random(seed)
-    degree = seed // 2 % 2
-    ring, measure = random_ring(rng, 1 + seed % 2, degree, 6, 30)
-    reach, places = reach_of(ring), [m for m in ring.box.modes() if any(m)]
-    f, g = [ring.series(1, 1, [([ring.one * (m == one and not j) for m in ring.box.modes()
-                                 for j in range(degree + 1)], None)])
-            for one in (rng.choice(places), rng.choice(places))]
-    found = ring.multiply(f, g, 99)
-    x, y = [array_of(h, ring, reach, degree) for h in (f, g)]
-    off = measure.of(product(x, y) - padded(
-        array_of(found, ring, reach, degree), 2 * reach, 2 * degree))
-    assert 1 <= off <= found.radius / unit_of(ring) * (1 + ROUGH)
-
-
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("powers", [(1, 2), (2, 1), (2, 2)])
 def test_a_pair_of_powers_of_s_that_is_lost_counts(seed, powers):
