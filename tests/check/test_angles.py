@@ -168,7 +168,7 @@ def test_parts_of_three_angles(run):
 def test_the_bound_over_three_angles():
     """B of the line is at the sines' common least value; of standard maps that of the largest."""
     fixed = check.fixed_of(96)
-    for waves, corner, B in ((UNITS + ((1, 1, 1),), (0.1, 0.12, 0.1, 0.2), None),
+    for waves, corner, B in ((UNITS + ((1, 1, 1),), (0.05, 0.06, 0.05, 0.1), None),
                              (UNITS, (0.3, -0.5, 0.2), 2.5), (UNITS, (0.3, 0.2, -0.5), 2.5)):
         known = [(k, 0) for k in waves]
         bound = check.torus_bound(fixed, known, [tuple(int(p * fixed.one) for p in corner)])

@@ -1682,7 +1682,7 @@ def remainder_quotients(generator):
 @pytest.mark.quick
 def test_lockstep_terms(np, generator, quotients):
     """What is left of a wave is bounded, hardly too far."""
-    assert 0.99 < worst(lambda: quotients(generator), 3000 * TORTURE) <= 1
+    assert 0.99 < worst(lambda: quotients(generator), 2000 * TORTURE) <= 1
 
 
 def left_side(waves, amplitudes, lanes, n, tails, l, lane, size, m=mp):
