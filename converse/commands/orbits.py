@@ -194,6 +194,8 @@ def run(options):
 
     if options.prove:
         balls()
+    if options.minimax and potential.n > 1:
+        raise ConverseError("--minimax: passes are looked for in maps of one angle; leave it out")
     if options.minimax and math.gcd(*p, q) > 1:
         raise ConverseError("--minimax: the type is not in lowest terms; divide it by %d"
                             % math.gcd(*p, q))

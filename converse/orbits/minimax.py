@@ -1,11 +1,10 @@
-"""Minimax orbits: the passes between a minimum and its neighbours, and how much action they cost.
+"""Minimax orbits of maps of one angle: the pass between a minimum and its neighbour, and the flux.
 
-A minimum x of type (p, q) has copies of the same action, x_{j+r} less whole turns, which are
-displaced by the vectors r p/q + m of a lattice.  On the way to one of them, through sequences of
-points of the same type, the action rises at least to the action of a pass.  A pass is also an
-orbit: a saddle with one direction down.  With one angle it is the minimax orbit of the Birkhoff
-pair.  The difference of action is then the flux through the gap of the (p, q) cantorus approximant
-(MacKay, Meiss and Percival, Physica D 13, 1984).
+A minimum x of type (p, q) has a copy of the same action, x_{j+r} less whole turns, displaced by 1/q
+on average.  On the way to it, through sequences of points of the same type, the action rises at
+least to the action of a pass.  A pass is also an orbit: a saddle with one direction down, the
+minimax orbit of the Birkhoff pair.  The difference of action is the flux through the gap of the
+(p, q) cantorus approximant (MacKay, Meiss and Percival, Physica D 13, 1984).
 
 The coordinate in which the two differ most is held, and the action minimized over all others, from
 one to the other.  Every way passes through each value of that coordinate, and so it rises to the
@@ -14,7 +13,7 @@ largest of these minima; where they depend on it continuously, the state there i
 
 import math
 from dataclasses import dataclass
-from typing import Any, Optional, Tuple
+from typing import Any, Optional
 
 import numpy as np
 
@@ -25,12 +24,12 @@ from .limits import (ACTION_ROUNDING, EIGENVALUE_ROUNDING, HELD_STEPS, MAX_HELD,
                      MIN_SLOPE, ORDER_TOLERANCE, PASS_BISECTIONS, PASS_STOPS)
 from .proved import balls
 from .solver import newton
-from .state import PeriodicOrbit, descended, expected, vector_words
+from .state import PeriodicOrbit, descended, expected
 
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """A minimum and a pass on the way to one of its neighbours.
+    """A minimum and the pass on the way to its neighbour, of a map of one angle.
 
     Parameters
     ----------
@@ -39,56 +38,35 @@ class Pair:
     minimax : PeriodicOrbit
         The pass: a saddle with exactly one direction of less action among the states of its type,
         unless its label says that rounding hides it.
-    step : tuple of int, shape (n,)
-        By how much that neighbour is displaced, in turns over q.
-    turn : int
-        The neighbour begins at this point of the minimum.
     """
 
     minimum: PeriodicOrbit
     minimax: PeriodicOrbit
-    step: Tuple[int, ...]
-    turn: int
 
     def __post_init__(self):
         low, high = expected(self.minimum), expected(self.minimax)
-        if (low.potential != high.potential or (low.p, low.q, low.eps) !=
-                (high.p, high.q, high.eps) or (low.potential.n == 1 and self.step != (1,))
-                or not isinstance(self.turn, int)
-                or any((self.turn * k - i) % low.q for k, i in zip(low.p, self.step))):
+        if low.potential.n != 1 or low.potential != high.potential or \
+                (low.p, low.q, low.eps) != (high.p, high.q, high.eps):
             raise ValueError("a pair is what state.minimax() returns: two states of one map and "
-                             "type, and the step to a neighbour")
+                             "type, of one angle")
 
     def __repr__(self):
         low = self.minimum
-        return "<Pair of %s, type %s, eps %r, step %s, barrier %.10g>" % (
-            low.potential.name, low.type_text, low.eps, vector_words(self.step, low.q),
-            self.barrier)
-
-    @property
-    def barrier(self) -> float:
-        """The action of the pass less the minimum's, of all q points together, in doubles and in
-        the units of the map.  Its rounding is about 1e-16 times the root of q, and eps where eps is
-        larger than 1."""
-        return self.minimum.potential.period ** 2 * difference(self.minimum, self.minimax)
+        return "<Pair of %s, type %s, eps %r, flux %.10g>" % (
+            low.potential.name, low.type_text, low.eps, self.flux)
 
     @property
     def flux(self) -> float:
-        """With one angle, the area that each iterate of the map carries through the gap, in either
-        direction, if the gap holds no other orbits of the type.  It is the barrier, an area in the
-        units of the map: the torus has the area period^2.  ValueError for
-        n = 2."""
-        self.check_flux()
-        return self.barrier
+        """The area that each iterate of the map carries through the gap, in either direction, if
+        the gap holds no other orbits of the type.
 
-    def check_flux(self) -> None:
-        """Raises ValueError unless there is one angle."""
-        if self.minimum.potential.n != 1:
-            raise ValueError("the flux is of maps with one angle; with two there is the difference "
-                             "of action, .barrier")
+        It is the action of the pass less the minimum's, of all q points together, in doubles and in
+        the units of the map: the torus has the area period^2.  Its rounding is about 1e-16 times
+        the root of q, and eps where eps is larger than 1."""
+        return self.minimum.potential.period ** 2 * difference(self.minimum, self.minimax)
 
     def prove(self, digits: Optional[int] = None) -> Any:
-        """Proves both orbits, and encloses the difference of their actions to ten digits at least.
+        """Proves both orbits, and encloses the flux to ten digits at least.
 
         Parameters
         ----------
@@ -98,7 +76,7 @@ class Pair:
         Returns
         -------
         ProvedPair
-            Its attributes include `minimum`, a ProvedOrbit, and enclosures `barrier` and `residue`.
+            Its attributes include `minimum`, a ProvedOrbit, and enclosures `flux` and `residue`.
 
         Raises
         ------
@@ -109,9 +87,14 @@ class Pair:
         return provided("Pair.prove")(self, digits)
 
 
-def gap_of(pair):
-    """The displacements of the neighbour's points from the minimum's, array (q, n)."""
-    return _gap(pair.minimum, pair.turn, pair.step)
+def turn_of(state):
+    """The point of a state at which its neighbour begins."""
+    return pow(state.p[0], -1, state.q) if state.q > 1 else 0
+
+
+def gap_of(state):
+    """The displacements of the neighbour's points from the state's, array (q, 1)."""
+    return np.roll(state.u, -turn_of(state), 0) - state.u + 1 / state.q
 
 
 def difference(low, high):
@@ -121,8 +104,10 @@ def difference(low, high):
     return math.fsum([*kinetic.ravel(), *(low.eps * (low._local[0] - high._local[0]))])
 
 
-def minimax(state, step=0):
+def minimax(state):
     """See PeriodicOrbit.minimax."""
+    if state.potential.n != 1:
+        raise ValueError("passes are looked for in maps of one angle")
     if math.gcd(*state.p, state.q) > 1:
         raise ValueError("the type %s is not in lowest terms: take the state of the shorter type"
                          % state.type_text)
@@ -132,46 +117,18 @@ def minimax(state, step=0):
     if state.label in ("saddle", "not stationary"):
         raise ConverseError("a pass leads from a minimum to its neighbour, and the state is %s: "
                             "relax() it" % {"saddle": "a saddle"}.get(state.label, state.label))
-    r, vector = _neighbour(state, step)
-    gap = _gap(state, r, vector)
-    if state.potential.n == 1 and not gap.min() > -ORDER_TOLERANCE:
+    gap = gap_of(state)
+    if not gap.min() > -ORDER_TOLERANCE:
         raise ConverseError("the points of the state are not ordered as those of a rotation, so "
                             "that it is not the least of its type: take another state")
     beyond = state.moved(state.u + gap)
     for rank in range(min(MAX_HELD, gap.size)):
-        found = _Way(state, beyond, MAX_NESTED_JUMPS, rank).top(least=state.potential.n == 1)
-        if found is not None and (state.potential.n == 2 or (
-                np.abs(found.u - state.u - gap / 2) < gap / 2 + ORDER_TOLERANCE).all()):
-            return Pair(state, found, vector, r)
+        found = _Way(state, beyond, MAX_NESTED_JUMPS, rank).top(least=True)
+        if found is not None and (
+                np.abs(found.u - state.u - gap / 2) < gap / 2 + ORDER_TOLERANCE).all():
+            return Pair(state, found)
     raise ConverseError("no pass found on the way to the neighbour: whatever coordinate is held, "
-                        "the others jump" + "; try another step, 0, 1 or 2" * (gap.shape[1] == 2))
-
-
-def _gap(state, r, vector):
-    """The displacements of the neighbour's points from the state's, array (q, n)."""
-    return np.roll(state.u, -r, 0) - state.u + np.array(vector) / state.q
-
-
-def _neighbour(state, which):
-    """The which-th neighbour: the r for which it begins at x_r, and q times its displacement.  With
-    two angles the three bound a cell of the lattice: the two shortest vectors, and the shorter one
-    of their sum and difference."""
-    n, q = state.potential.n, state.q
-    if isinstance(which, (bool, float)) or which not in range(2 * n - 1):
-        raise ValueError("step is %s, not %r" % ("0, 1 or 2, the nearest neighbour first" if n == 2
-                                                 else "0 with one angle", which))
-    if n == 1:
-        return pow(state.p[0], -1, q) if q > 1 else 0, (1,)
-    c = np.arange(q, dtype=np.int64)[:, None] * (np.array(state.p) % q) % q
-    c = np.concatenate([np.where(2 * c > q, c - q, c), [[q, 0], [0, q]]])
-    r = np.append(np.arange(q), [0, 0])
-    order = np.argsort((c ** 2).sum(1), kind="stable")[1:]          # the first one is zero
-    first = order[0]
-    second = order[np.argmax(c[order, 0] * c[first, 1] != c[order, 1] * c[first, 0])]
-    sign = -1 if c[first] @ c[second] > 0 else 1
-    turn, vector = ((r[first], c[first]), (r[second], c[second]),
-                    ((r[first] + sign * r[second]) % q, c[first] + sign * c[second]))[which]
-    return int(turn), tuple(map(int, vector))
+                        "the others jump")
 
 
 class _Way:

@@ -1,14 +1,14 @@
 """Proved pairs: that a true pass lies beside one that was found, and how much more action it has
 than the proved minimum.  docs/proofs/proved-orbits.md, section 6, has the theorem and its proof.
 
-The pass is a saddle.  One coordinate of one point is made stiffer by sigma: H = P - sigma e e^T,
+The pass is a saddle.  One point is made stiffer by sigma: H = P - sigma e e^T,
 where P is positive definite.  The pivots certify this as they do for minima.  Bounds of H follow
 from bounds of P by the formula of Sherman and Morrison.
 """
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Optional, Tuple
+from typing import Tuple
 
 import numpy as np
 from flint import arb, arb_mat
@@ -19,7 +19,7 @@ from .enclosure import Enclosure, ball, lower, square, upper
 from .exponents import growth
 from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
                      MAX_STIFFNESS, SHOWN_PLACES)
-from .minimax import Pair, gap_of
+from .minimax import Pair, gap_of, turn_of
 from .proved import (NotProved, ProvedOrbit, TooFewPlaces, _eps, distance_words, grown, in_units,
                      prove)
 
@@ -42,13 +42,13 @@ class ProvedPair:
         Hessian of its action has exactly one negative eigenvalue, and none is zero.
     action : Interval
         Its action per point less the straight orbit's, in the units of the map.
-    barrier : Interval
+    flux : Interval
         Its action less the minimum's, of all q points together, in the units of the map.
-    residue : Interval or None
-        Its residue, which is positive; None for n = 2.
+    residue : Interval
+        Its residue, which is positive.
     between : bool
         Is it proved that each of its points lies between the points of the minimum and of its
-        neighbour (n = 1)?  False means undecided.
+        neighbour?  False means undecided.
     """
 
     pair: Pair
@@ -57,20 +57,14 @@ class ProvedPair:
     radius: Fraction
     displacements: Tuple[Tuple[Fraction, ...], ...]
     action: Interval
-    barrier: Interval
-    residue: Optional[Interval]
+    flux: Interval
+    residue: Interval
     between: bool
 
     def __repr__(self):
-        return "<ProvedPair %s, %s, eps %r, barrier %r>" % (
+        return "<ProvedPair %s, %s, eps %r, flux %r>" % (
             self.pair.minimum.potential.name, self.pair.minimum.type_text, self.pair.minimum.eps,
-            self.barrier)
-
-    @property
-    def flux(self) -> Interval:
-        """The barrier, of one angle; see Pair.flux.  ValueError for n = 2."""
-        self.pair.check_flux()
-        return self.barrier
+            self.flux)
 
     def report(self) -> str:
         """The theorem in words, the minimum first."""
@@ -84,10 +78,8 @@ class ProvedPair:
             "through once, has exactly one negative direction and is nondegenerate.",
             *["Each of its points is between that of the minimum and that of the minimum's "
               "neighbour."] * self.between,
-            "%s : %r" % ("Flux" if state.potential.n == 1 else
-                         "Action less that of the minimum, of all points together",
-                         self.barrier)]
-        if self.residue is not None and self.residue[1] < 10 ** SHOWN_PLACES:
+            "Flux : %r" % (self.flux,)]
+        if self.residue[1] < 10 ** SHOWN_PLACES:
             lines.append("Residue of the minimax orbit : %r" % (self.residue,))
         return self.minimum.report() + "\n".join(lines) + "\n"
 
@@ -109,10 +101,10 @@ def prove_pair(pair, digits=None):
             except TooFewPlaces as error:
                 reason = str(error)
                 continue
-        width, most = found.barrier[1] - found.barrier[0], found.barrier[1] / 10 ** GUARD_PLACES
+        width, most = found.flux[1] - found.flux[0], found.flux[1] / 10 ** GUARD_PLACES
         if width <= most:
             return found
-        reason = "the difference of action is known to %.1e only" % width
+        reason = "the flux is known to %.1e only" % width
         if 2 * pair.minimum.q * (minimum.action[1] - minimum.action[0]) > most:
             minimum = prove(pair.minimum, min(places, most_digits))
     raise NotProved("of the pass, with %d decimal places: %s" % (places, reason))
@@ -124,22 +116,17 @@ class _Pass:
     def __init__(self, pair, minimum, exact, digits, places):
         self.pair, self.minimum, self.exact = pair, minimum, exact
         self.digits, self.places = digits, places
-        gap = gap_of(pair)
-        self.j, self.i = map(int, np.unravel_index(np.argmax(np.abs(gap)), gap.shape))
+        self.j = int(np.argmax(np.abs(gap_of(pair.minimum))))
         if pair.minimax.label != "saddle":
-            if pair.minimum.potential.n == 2:
-                raise NotProved("the pass is too flat: in doubles it is no saddle")
             self.halfway()
         self.sigma = self.stiffness(pair.minimax)
-        self.e = [arb_mat(exact.n, 1, [int((j, k) == (self.j, self.i)) for k in range(exact.n)])
-                  for j in range(exact.q)]
+        self.e = [arb_mat(1, 1, [int(j == self.j)]) for j in range(exact.q)]
 
     def halfway(self):
         """Begins half-way between the proved minimum and its neighbour.  Where doubles do not see a
         saddle, W is a sine wave."""
         q, own = self.exact.q, self.minimum.displacements
-        r = self.pair.turn
-        shift = Fraction(self.pair.step[0], q)
+        r, shift = turn_of(self.pair.minimum), Fraction(1, q)
         self.exact.evaluate(self.places)
         self.exact.u = [arb_mat(1, 1, [ball((own[j][0] + own[(j + r) % q][0] + shift) / 2).mid()])
                         for j in range(q)]
@@ -147,17 +134,15 @@ class _Pass:
     def stiffness(self, state):
         """sigma: 1 - 2 S, S < 0 the Schur complement of that coordinate in H."""
         b = np.zeros_like(state.u)
-        b[self.j, self.i] = 1
-        inside = state.solved(b)[self.j, self.i]
+        b[self.j] = 1
+        inside = state.solved(b)[self.j, 0]
         return 1 + Fraction(min(2 / abs(inside), MAX_STIFFNESS) if inside < 0 else 0.0)
 
     def evaluate(self):
         """Gradient, action, and P for the Hessian."""
         exact = self.exact
         exact.evaluate(self.places)
-        entries = exact.beta[self.j].entries()
-        entries[self.i * (exact.n + 1)] += ball(self.sigma)
-        exact.beta[self.j] = arb_mat(exact.n, exact.n, entries)
+        exact.beta[self.j] += arb_mat(1, 1, [ball(self.sigma)])
 
     def column(self):
         """About P^-1 e."""
@@ -167,7 +152,7 @@ class _Pass:
         return found
 
     def at(self, v):
-        return v[self.j][self.i, 0]
+        return v[self.j][0, 0]
 
     def refine(self):
         """Newton's method until the gradient is as small as the places allow."""
@@ -217,14 +202,11 @@ class _Pass:
         action = in_units(state.potential, (exact.action[0] - reach / exact.q,
                                             exact.action[1] + reach / exact.q), shown)
         own = self.minimum.action
-        residue = None
-        if exact.n == 1:
-            residue = self.residue(m, bend * radius, size, inside, shown)
         displacements = exact.displacements()
         return ProvedPair(self.pair, self.minimum, self.places, radius, displacements, action,
                           Interval(exact.q * (action[0] - own[1]), exact.q * (action[1] - own[0])),
-                          residue,
-                          exact.n == 1 and self.between(displacements, radius))
+                          self.residue(m, bend * radius, size, inside, shown),
+                          self.between(displacements, radius))
 
     def residue(self, m, away, size, inside, shown):
         """Encloses the residue, -det P (1 - sigma e.P^-1 e)/4, of every orbit whose blocks are
@@ -244,7 +226,7 @@ class _Pass:
         """Is each point, wherever in its ball, between the minimum's and its neighbour's?"""
         q, own, away = self.exact.q, self.minimum.displacements, self.minimum.radius + radius
         origins = [Fraction(state.origin[0]) for state in (self.pair.minimum, self.pair.minimax)]
-        r, step = self.pair.turn, Fraction(self.pair.step[0], q)
+        r, step = turn_of(self.pair.minimum), Fraction(1, q)
         shift = origins[1] - origins[0]
         return all(own[j][0] + away < displacements[j][0] + shift
                    < own[(j + r) % q][0] + step - away for j in range(q))

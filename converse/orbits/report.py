@@ -4,7 +4,6 @@ import math
 
 from .pictures import exponent_text
 from .proved import action_words, map_words
-from .state import vector_words
 
 LARGE = 1e10                            # Stability indices above it are given by their logarithm.
 MEANINGS = {                            # of labels
@@ -65,13 +64,9 @@ def _index_text(rho):
 
 
 def pass_report(pair):
-    """The lines of the pass beside a minimum."""
-    towards = "towards the neighbour displaced by " + vector_words(pair.step, pair.minimum.q)
+    """The pass of a Pair, in lines."""
+    towards = "towards the neighbour displaced by 1/%d" % pair.minimum.q
     if pair.minimax.label != "saddle":
         return "Pass : too flat for doubles, %s\n" % towards
-    one = pair.minimum.potential.n == 1
-    return "Pass : saddle, %s\n%s\n%s : %.10g\n" % (
-        towards,
-        "Residue of the minimax orbit : %.10g" % pair.minimax.residue if one else
-        "Stability indices of the pass : " + ", ".join(map(_index_text, pair.minimax.indices)),
-        "Flux" if one else "Difference of action", pair.barrier)
+    return "Pass : saddle, %s\nResidue of the minimax orbit : %.10g\nFlux : %.10g\n" % (
+        towards, pair.minimax.residue, pair.flux)

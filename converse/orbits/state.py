@@ -360,23 +360,22 @@ class PeriodicOrbit:
         return Deviation(*(self.potential.period * sqrt(float(((self.u - c) ** 2).sum(1).max()))
                            for c in (self.u[0], 0.0)))
 
-    def minimax(self, step: int = 0) -> Any:
-        """The pass from this minimum to one of its neighbours, itself begun at another point, with
-        the difference of action, which for one angle is the flux through the gap.
+    def minimax(self) -> Any:
+        """The pass between this minimum and its neighbour, and the flux through the gap: of maps of
+        one angle.
 
-        Parameters
-        ----------
-        step : int
-            With two angles, which neighbour: 0 the nearest; 1, 2 the others around a cell.
+        Returns
+        -------
+        Pair
 
         Raises
         ------
         ValueError
-            The type is not in lowest terms.
+            The map has two angles, or the type is not in lowest terms.
         ConverseError
-            The state is not a minimum, or certainly not the least; or no pass is found.
+            The state is no minimum, or not the least of its type, or no pass was found.
         """
-        return provided("PeriodicOrbit.minimax")(self, step)
+        return provided("PeriodicOrbit.minimax")(self)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes points, momenta and all else of the state to a file, from which load() reads the

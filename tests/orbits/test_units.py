@@ -51,7 +51,6 @@ def test_the_flux_through_the_gap_of_the_fixed_point():
     proved = pair.prove()
     low, high = proved.flux
     assert low < Fraction("2.4") < high < low + Fraction(1, 10 ** 15)
-    assert proved.flux == proved.barrier
 
 
 @pytest.mark.parametrize("system, p, q", CASES)
