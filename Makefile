@@ -29,7 +29,8 @@ define install
 endef
 
 .PHONY: prove check test lint format torture mutate accuracy gappa sanitize memcheck warnings \
-    arm bench charts figures docs dist man clean formal formal-quick formal-check golden verified-check checker
+    arm bench charts figures docs dist man clean formal formal-quick formal-check golden verified-check \
+    checker compare packages
 
 prove: $(VENV)/installed
 	$(VENV)/bin/converse -d30 inputs/trig274.in
@@ -44,6 +45,8 @@ AGAIN = { $(PYTEST) -q --last-failed --last-failed-no-failures none tests; exit 
 # The tests except the slow ones, a share of every room (tests/conftest.py), with a third of the random
 # cases.  The first run also downloads the test tools.
 check: export CONVERSE_TORTURE = 1/3
+# What the first process compiles hundreds of others read.
+check test: export PYTHONDONTWRITEBYTECODE =
 check: $(VENV)/with-test
 	$(PYTEST) $(TWO) -q -m 'not slow' --assert=plain tests || $(AGAIN)
 
@@ -73,6 +76,10 @@ torture: $(VENV)/with-test
 mutate: $(VENV)/with-test
 	$(VENV)/bin/python tests/mutate --sample 40 --seed $(or $(SEED),0)
 
+# Reports and trees of the inputs, with those of golden_outputs/.
+compare: $(VENV)/installed
+	$(VENV)/bin/python golden_outputs/compare.py
+
 # The table of proven bounds and worst errors, measured anew.
 accuracy: $(VENV)/with-test
 	PYTHONPATH=tests/loewner:tests/thesis $(VENV)/bin/python tests/accuracy.py > docs/development/accuracy.md
@@ -93,6 +100,7 @@ memcheck: $(VENV)/installed
 # sanitizers find nothing in Python, figures, reports, tables or the texts of roundings.  Linked proofs
 # are many ordinary searches, and so are the tasks of threads, processes, a Dask cluster and a sweep.
 # Orbits of thousands of points are followed as those of hundreds; test_the_longest_orbits follows some.
+# SHARE="not slow" takes the share of them that make check takes.
 SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover search thesis) \
     $(addprefix --ignore=tests/, loewner/test_margins.py prover/test_best_shifts.py \
     $(addprefix orbits/test_, farey.py pictures.py points.py sweep.py) \
@@ -105,7 +113,7 @@ sanitize: export LDFLAGS = -fsanitize=address,undefined
 sanitize: $(SANITIZED)/installed
 	$(SANITIZED)/bin/python tests/kernels/build.py
 	PYTHONSAFEPATH=1 LD_PRELOAD="$$(gcc -print-file-name=libasan.so) $$(gcc -print-file-name=libstdc++.so.6)" ASAN_OPTIONS=detect_leaks=0 \
-	UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(SANITIZED)/bin/pytest $(TWO) $(SANITIZED_TESTS)
+	UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(SANITIZED)/bin/pytest $(TWO) $(if $(SHARE),-m '$(SHARE)') $(SANITIZED_TESTS)
 
 # The core's translation units.
 UNITS = $(shell $(VENV)/bin/python -c 'exec(open("converse/_build.py").read()); print(*SOURCES)')
@@ -154,30 +162,37 @@ man: $(VENV)/with-man
 	$(VENV)/bin/python docs/manual.py
 
 FORMAL_PACKAGES = coq libcoq-interval ocaml ocaml-findlib libcoq-core-ocaml-dev libsha-ocaml-dev
+# Two processes, unless make was asked for some.
+FORMAL = $(MAKE) -C formal $(if $(filter -j%,$(MAKEFLAGS)),,-j2)
 
-# The theorems that Coq believes: each as it is stated, what it assumes, what it took; and three of them.
+# Of the system, for all that .ci/run makes.
+packages:
+	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES) gappa libcoq-gappa
+
+# The theorems that Coq believes: each as it is stated, what it assumes, what it took.
 formal: $(VENV)/installed
 	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
-	$(MAKE) -C formal -j2 theorems
+	+$(FORMAL) theorems
 
+# Three theorems, one of each kind of numbers, the circle below, and the checker that Coq has proved.
 formal-quick: $(VENV)/installed
 	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
-	$(MAKE) -C formal -j2 quick
+	+$(FORMAL) quick build/converse-verified
 
 # The invariant circle of the standard map with k = 0.8; a minute.
 golden: $(VENV)/installed
 	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
-	$(MAKE) -C formal -j2 golden
+	+$(FORMAL) golden
 
 # The library's functors and a theorem once more, by Coq's second checker; minutes.
 formal-check: $(VENV)/installed
 	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
-	$(MAKE) -C formal -j2 check
+	+$(FORMAL) check
 
 # The checker that Coq has proved.
 verified-check:
 	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
-	$(MAKE) -C formal -j2 build/converse-verified
+	+$(FORMAL) build/converse-verified
 	@echo 'The checker is formal/build/converse-verified.'
 
 # The checker as one file that Python runs and that can be mailed; Python is enough.
