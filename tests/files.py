@@ -1,7 +1,19 @@
-"""Files of proofs as text: with the checksum that belongs to them, a field or a tree changed."""
+"""Files of proofs as text: with the checksum that belongs to them, a field or a tree changed; and
+the problem of most of them."""
 
 import hashlib
 import re
+from fractions import Fraction
+
+from converse import Problem
+from converse.model.map import LINE, MuldoonMap
+
+
+def line(low, high=None, together=True, **region):
+    """The thesis's line, a = b = c/2, from one epsilon to another: alone or with all in between."""
+    ends = LINE * Fraction(low), LINE * Fraction(high or low)
+    made = MuldoonMap(ends, ends, tuple(2 * end for end in ends))
+    return Problem(made.tied() if together else made, **region)
 
 
 def sealed(file):

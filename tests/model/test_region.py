@@ -8,10 +8,11 @@ from itertools import permutations, product
 import mpmath
 import numpy as np
 import pytest
+from files import line
 
 from converse import FourierMap, Problem, Proof, Settings, Tree, prove
 from converse.model import region
-from converse.model.map import LINE, THESIS, MuldoonMap, SymplecticMap
+from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.problem import IDENTITY, periods
 from converse.model.region import DIAGONALS, EXCHANGE, REVERSAL
 
@@ -21,12 +22,6 @@ CASES = 200 * TORTURE
 STAR = "0.858028", "0.858028"
 THREE = SymplecticMap([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)], ["0.2", "0.2", "0.2", "0.4"],
                       [["0.01", "0.01", "0.01", "0.02"]])
-
-
-def line(low, high=None, **ranges):
-    low, high = Fraction(low) * LINE, Fraction(high or low) * LINE
-    made = MuldoonMap((low, high), (low, high), (2 * low, 2 * high))
-    return Problem(made.tied() if low != high else made, **ranges)
 
 
 def draw(rng):

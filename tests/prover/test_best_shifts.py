@@ -3,12 +3,14 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
 import pytest
+from files import line
 from test_links import make_links_easy
 
 from converse import Problem, prove
-from converse.model.map import LINE, MuldoonMap, SymplecticMap
+from converse.model.map import SymplecticMap
 from converse.model.region import folds
 from converse.prover import native, starts
 from converse.prover.settings import Settings
@@ -20,9 +22,7 @@ HERE = "0.858028", "0.858028"
 REGION = (Fraction("0.6807"), Fraction("0.6851")), (Fraction(0), Fraction("0.006"))
 
 
-def line(low, high=None, axes=(1, 1, 1, -1)):
-    ends = LINE * Fraction(low), LINE * Fraction(high or low)
-    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends)).tied(), axes=axes)
+line = partial(line, axes=(1, 1, 1, -1))
 
 
 def grown(problem, depth=120, stubborn=False):
@@ -53,6 +53,7 @@ def ends(amplitude, v):
     return found
 
 
+@pytest.mark.slow
 def test_orbits_through_a_region_that_moves_stay_together(narrow):
     """Against differences: of all shifts near these none moves the ends of orbits less."""
     problem, lower, _, ((s0, s1),) = narrow

@@ -9,14 +9,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from files import sealed
+from files import line, sealed
 
 from converse import ConverseError, Problem, Proof, Settings, StandardMap, check, prove, read_input
 from converse.check.claim import Claim, Wave
 from converse.check.criterion import Criterion
 from converse.check.links import displacement
 from converse.model import region
-from converse.model.map import LINE, MuldoonMap, SymplecticMap
+from converse.model.map import MuldoonMap, SymplecticMap
 from converse.prover import links, native, run, starts, tree
 from converse.prover.links import (SPARE, Link, Links, Target, clusters, crests, hull_of,
                                    least_slope, linked_tree, region_around)
@@ -31,11 +31,6 @@ from moments import PATIENCE
 from truth import TORTURE
 
 DIAGONAL = 1, 1, 1, -1
-
-
-def line(low, high=None):
-    ends = LINE * Fraction(low), LINE * Fraction(high or low)
-    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends)).tied())
 
 
 def make_links_easy(monkeypatch):
@@ -59,10 +54,6 @@ def linked():
     with pytest.MonkeyPatch.context() as monkeypatch:
         make_links_easy(monkeypatch)
         return prove(line("0.015"), method="loewner")
-
-
-def timeless(proof):
-    return replace(proof, seconds=0)
 
 
 # ---- the lemma
@@ -255,7 +246,7 @@ def test_a_linked_proof(linked, tmp_path):
     assert linked.counts.proved == sum(text.count("P") for text in trees)
     assert linked.counts.most_cuts == max(map(tree.most_cuts, trees))
     linked.save(tmp_path / "proof")
-    assert timeless(replace(Proof.load(tmp_path / "proof"), restored=0)) == timeless(linked)
+    assert Proof.load(tmp_path / "proof") == linked
     assert linked.verify()
     for part in linked.parts:
         assert "x* = (%s, %s), " % part.xstar in linked.report()
@@ -314,6 +305,7 @@ def test_wrong_links_are_not_resumed(linked, tmp_path, change, wrong):
     assert trees() == before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending, parts", [(".*?P", 0), (".*?b.*?P", 1)])
 def test_parts_that_nothing_is_linked_to(linked, tmp_path, ending, parts):
     """An undecided prism ended the search before others were linked: a deeper one has no parts
@@ -326,6 +318,7 @@ def test_parts_that_nothing_is_linked_to(linked, tmp_path, ending, parts):
     assert again.verify()
 
 
+@pytest.mark.slow
 def test_one_region_may_do_for_two_clusters(easily, monkeypatch):
     """A part that no cell is linked to, as those before it take them all, is not written."""
     monkeypatch.setattr(starts, "region_of", lambda *_: ((Fraction(-1), Fraction(2)),) * 2)
@@ -382,8 +375,8 @@ def test_resumed_at_any_moment(linked, easily, tmp_path, monkeypatch, jobs, mome
             states.add((len(before.parts), sum(map(bool, trees))))
             moment = 0
             proof = prove(resume=path, jobs=jobs)
-        assert timeless(replace(proof, restored=0, sha256="")) == timeless(linked)
-        assert timeless(replace(Proof.load(path), restored=0, sha256="")) == timeless(linked)
+        assert proof == linked
+        assert Proof.load(path) == linked
     assert states == found
 
 
@@ -432,12 +425,12 @@ def test_a_part_that_grows_too_large_is_linked_further(linked, easily, monkeypat
     monkeypatch.setattr(run, "plan", noted)
     most = max(part.text.count("P") for part in linked.parts)
     monkeypatch.setattr(run, "MAX_PROOF_LEAVES", most)
-    assert timeless(prove(line("0.015"), method="loewner")) == timeless(linked)
+    assert prove(line("0.015"), method="loewner") == linked
     assert asked.pop() == (linked.xstar, True) and not asked
     monkeypatch.setattr(run, "MAX_PROOF_LEAVES", 40)
     proof, same = (prove(line("0.015"), method="loewner", jobs=jobs) for jobs in (1, 3))
     assert proof.verify() and len(proof.parts) == 10
-    assert timeless(proof) == timeless(same) and asked[7:] == asked[:7]
+    assert proof == same and asked[7:] == asked[:7]
     assert [found for _, found in asked[:7]] == [True] * 4 + [False] * 3
     monkeypatch.setattr(run, "LONG", native.ORDINARY)
     assert not prove(line("0.015", "0.01501"), method="loewner").parts
@@ -525,8 +518,7 @@ def test_hints_of_several_trees(linked, tmp_path):
         replace(linked.trees[0], text="0?", pending=(3, 4)), replace(first, text="0P1"),
         replace(second, text="0", pending=(0, 9))), counts=Counts(cuts=4, proved=1))
     proof.save(tmp_path / "proof")
-    assert timeless(replace(Proof.load(tmp_path / "proof"), restored=0, sha256="")) == \
-        timeless(proof)
+    assert Proof.load(tmp_path / "proof") == proof
 
 
 def test_regions_of_parts(linked):

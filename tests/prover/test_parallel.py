@@ -10,29 +10,19 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 from conftest import ROOT, around
+from files import line
 
 from converse import ConverseError, Proof, __version__, prove
 from converse.model.exact import decimal_text
-from converse.model.map import LINE
 from converse.prover import native, run, shared, tree, workers
 from converse.prover.settings import Settings
 
 from moments import PATIENCE
 from truth import TORTURE
-
-
-def line(low, high):
-    low, high = Fraction(low) * LINE, Fraction(high) * LINE
-    c, h = (low + high) / 2, (high - low) / 2
-    return around((c, c, 2 * c, Fraction(1), Fraction(1)),
-                          (h, h, 2 * h, Fraction(1), Fraction(1)),
-                   together=True)
-
 
 LONG = line("0.01405", "0.0149")            # a third of a second, 27,696 leaves
 
@@ -55,19 +45,15 @@ def ends(monkeypatch):
     return ends
 
 
-def timeless(proof):
-    return replace(proof, seconds=0)
-
-
 @pytest.fixture(scope="module")
 def proof():
-    return timeless(prove(LONG, method="loewner", jobs=1))
+    return prove(LONG, method="loewner", jobs=1)
 
 
 def test_threads(proof):
     assert proof.no_tori
     for jobs in (2, 3, 7):
-        assert timeless(prove(LONG, method="loewner", jobs=jobs)) == proof
+        assert prove(LONG, method="loewner", jobs=jobs) == proof
 
 
 def test_the_method_of_the_thesis_too():
@@ -75,25 +61,24 @@ def test_the_method_of_the_thesis_too():
     problem = around((a, a, 2 * a, Fraction(1), Fraction(1)),
                       (b, b, 2 * b, Fraction(1), Fraction(1)))
     with concurrent.futures.ThreadPoolExecutor(3) as executor:
-        assert timeless(prove(problem, executor=executor,
-                              method="thesis")) == timeless(prove(problem, jobs=1, method="thesis"))
+        assert prove(problem, executor=executor, method="thesis") == prove(
+            problem, jobs=1, method="thesis")
 
 
 @pytest.mark.parametrize("stubborn", [False, True])
 def test_undecided_prisms(stubborn):
     problem = line("0.0100", "0.0280")
-    alone, many = (timeless(prove(problem, depth=13, stubborn=stubborn, method="loewner",
-                                  jobs=jobs))
+    alone, many = (prove(problem, depth=13, stubborn=stubborn, method="loewner", jobs=jobs)
                    for jobs in (1, 3))
     assert alone.undecided and alone == many
     with concurrent.futures.ThreadPoolExecutor(3) as executor:
-        assert timeless(prove(problem, depth=13, stubborn=stubborn, method="loewner",
-                              executor=executor)) == alone
+        assert prove(problem, depth=13, stubborn=stubborn, method="loewner",
+                     executor=executor) == alone
 
 
 def test_processes(proof):
     with concurrent.futures.ProcessPoolExecutor(2) as executor:
-        assert timeless(prove(LONG, method="loewner", executor=executor)) == proof
+        assert prove(LONG, method="loewner", executor=executor) == proof
 
 
 def die(*args):
@@ -122,10 +107,10 @@ def test_time_limit_and_resume(proof, tmp_path, ends):
     ends(lambda self: (self.counts_before + self.view.counts).cuts > cuts + 2000)
     result = prove(LONG, method="loewner", jobs=3, backup=path)
     while not result.all_decided:
-        assert timeless(Proof.load(path)) == timeless(result) and result.counts.cuts > cuts
+        assert Proof.load(path) == result and result.counts.cuts > cuts
         cuts, runs = result.counts.cuts, runs + 1
         result = prove(resume=path, jobs=3)
-    assert runs > 1 and timeless(result) == timeless(Proof.load(path)) == proof
+    assert runs > 1 and result == Proof.load(path) == proof
 
 
 class Inline(concurrent.futures.Executor):
@@ -145,7 +130,7 @@ def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
     monkeypatch.setattr(shared, "TASK_SECONDS", 0.001)
     monkeypatch.setattr("converse.storage.backup.SECONDS", 0.005)
     problem, path = line("0.0165", "0.0280"), tmp_path / "a.proof"
-    whole = timeless(prove(problem, method="loewner", jobs=1, depth=depth))
+    whole = prove(problem, method="loewner", jobs=1, depth=depth)
     assert whole.no_tori == (depth == 120)
     rng, struck, lines = random.Random(1), [], [0, 0]
 
@@ -172,7 +157,7 @@ def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
             sys.settrace(None)
         most = lines[0] if len(struck) == before else most
         if path.exists():
-            result = timeless(prove(resume=path, jobs=1))
+            result = prove(resume=path, jobs=1)
             assert result == whole
     assert len(struck) > runs / 2
 
@@ -211,7 +196,7 @@ def test_a_killed_coordinator_goes_on_from_its_backup(proof, tmp_path):
         assert killed.returncode == -signal.SIGKILL
         half = Proof.load(path)
         assert not half.no_tori and (torn or half.counts.cuts > cuts)
-    assert timeless(prove(resume=path)) == timeless(Proof.load(path)) == proof
+    assert prove(resume=path) == Proof.load(path) == proof
 
 
 @pytest.fixture(scope="module")
@@ -247,7 +232,7 @@ def test_dask_without_workers(proof, cluster):
     made, client = cluster(0)
     adaptive = made.adapt(minimum=0, maximum=1)
     with pytest.warns(RuntimeWarning, match="no workers; waiting"):
-        assert timeless(prove(LONG, method="loewner", executor=client.get_executor())) == proof
+        assert prove(LONG, method="loewner", executor=client.get_executor()) == proof
     adaptive.stop()
 
 
@@ -294,7 +279,7 @@ def test_dask_loses_a_worker(proof, cluster):
         return submitted[-1]
 
     executor.submit = submit
-    assert timeless(prove(LONG, method="loewner", executor=executor, jobs=4)) == proof
+    assert prove(LONG, method="loewner", executor=executor, jobs=4) == proof
     assert len(submitted) > 3
 
 
@@ -357,7 +342,7 @@ sys.exit(main())
     assert all(line.startswith("converse: ") for line in result.stderr.splitlines())
     half = Proof.load(tmp_path / "a.proof")
     assert half.tree and not half.no_tori
-    assert timeless(prove(resume=half, jobs=2)).tree == proof.tree
+    assert prove(resume=half, jobs=2).tree == proof.tree
 
 
 def input_text(problem):
@@ -401,7 +386,7 @@ def test_an_undecided_prism_before_finished_ones(tmp_path, monkeypatch, jobs):
     assert alone.undecided
     many = prove(problem, method="loewner", depth=15, executor=executor, jobs=jobs, backup=path)
     assert any(taken)                   # it did go that way
-    assert timeless(many) == timeless(alone) and "Undecided  1 prism, " in many.report()
+    assert many == alone and "Undecided  1 prism, " in many.report()
     deeper = prove(resume=path, depth=120, executor=executor,
                    jobs=jobs)    # and it can be continued
     assert deeper.no_tori and deeper.counts.undecided == 0

@@ -3,12 +3,14 @@
 import re
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import product
 
 import pytest
+from files import line
 
 from converse import ConverseError, Problem, Proof, Settings, prove
-from converse.model.map import LINE, THESIS, MuldoonMap, SymplecticMap
+from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.region import skips, symmetries_used
 from converse.prover import native, tree
 from converse.prover.links import (PI, SPARE, Link, Links, Target, hull_of, linked_tree, region_of,
@@ -25,12 +27,7 @@ B = Fraction("2.8")
 SHIFTS = (Fraction("0.01"), Fraction("-0.02")),
 
 
-def line(low, high):
-    ends = LINE * Fraction(low), LINE * Fraction(high)
-    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends)).tied(),
-                   axes=(1, 1, 1, -1))
-
-
+line = partial(line, axes=(1, 1, 1, -1))
 PATCH = Problem(SymplecticMap(THESIS, ["0.15", "0.16", "0.3"], [["0.001", 0, 0], [0, "0.002", 0]]),
                 axes=(1, 1, 1, -1), v0=("0.5", "0.7"), v1=("-0.1", "0.3"))
 TWO = (Fraction("0.01"), Fraction("-0.02")), (Fraction(0), Fraction("0.005"))
@@ -167,6 +164,7 @@ def tree_of(cell):
     return text
 
 
+@pytest.mark.slow
 def test_a_region_for_cells_takes_them_all():
     rng = rng_for("shifted regions")
     for mine, theirs, there in product(((), TWO), ((), TWO), (HERE, THERE)):
@@ -231,10 +229,6 @@ def moved(begun):
     return proof
 
 
-def timeless(proof):
-    return replace(proof, seconds=0, restored=0, sha256="")
-
-
 def changed(proof, path, change):
     proof.save(path)
     text = change(path.read_text())
@@ -285,14 +279,14 @@ def test_the_lines_of_a_part(moved, tmp_path):
     text = path.read_text()
     assert re.search(r"part: b\nxstar: 0.85 0.85\nv0: \S+ \S+ -0.04\nv1: \S+ \S+ 0\ntree:", text)
     again = Proof.load(path)
-    assert timeless(again) == timeless(moved) and again.parts[1].problem.shifts
+    assert again == moved and again.parts[1].problem.shifts
     half = moved.with_tree(1, problem=replace(moved.parts[0].problem, shifts=()))
     half.save(path)
     assert re.search(r"part: a\nxstar: 0.858 0.858\nv0: \S+ \S+\nv1: \S+ \S+\n", path.read_text())
-    assert timeless(Proof.load(path)) == timeless(half)
+    assert Proof.load(path) == half
     still = half.with_tree(2, problem=replace(half.parts[1].problem, shifts=((0, 0),)))
     still.save(path)
-    assert timeless(Proof.load(path)) == timeless(still)
+    assert Proof.load(path) == still
 
 
 @pytest.mark.parametrize("change, wrong", [
@@ -319,7 +313,7 @@ def test_wrong_numbers_of_parts(moved, tmp_path, change, wrong):
 def test_a_part_may_have_two_numbers(moved, tmp_path):
     path = changed(moved, tmp_path / "proof", lambda text: re.sub(
         "(part: b\n.*\n.*\nv1: .*) 0\n", r"\1\n", text))
-    assert timeless(Proof.load(path)) == timeless(moved)
+    assert Proof.load(path) == moved
 
 
 def test_wrong_shifts_are_not_resumed(moved, tmp_path):
@@ -329,13 +323,14 @@ def test_wrong_shifts_are_not_resumed(moved, tmp_path):
         prove(resume=path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moment", [
     pytest.param(1, marks=pytest.mark.slow), 2, pytest.param(3, marks=pytest.mark.slow)])
 def test_interrupted(begun, moved, tmp_path, monkeypatch, moment):
     """A backup is read and continued to the same proof."""
     path, calls = tmp_path / "backup", []
     begun.save(path)
-    assert timeless(Proof.load(path)) == timeless(begun)
+    assert Proof.load(path) == begun
 
     def interrupts(*_):
         calls.append(1)
@@ -346,7 +341,7 @@ def test_interrupted(begun, moved, tmp_path, monkeypatch, moment):
         prove(resume=path, progress=interrupts, backup=path)
     except KeyboardInterrupt:
         assert Proof.load(path).parts
-    assert timeless(prove(resume=path)) == timeless(moved)
+    assert prove(resume=path) == moved
 
 
 def test_undecided_prisms_of_parts_that_move(moved):

@@ -4,27 +4,17 @@ import math
 import random
 import threading
 from dataclasses import replace
-from fractions import Fraction
 
 import pytest
-from conftest import around
+from files import line
 
-from converse.model.map import LINE
 from converse.prover.native import Search, Task, WrongTree, chosen_start, grow
 from converse.prover.settings import Settings
 from converse.prover.shared import Growth
 
 from truth import TORTURE
 
-
-def line(low, high, together=True):
-    low, high = Fraction(low) * LINE, Fraction(high) * LINE
-    c, h = (low + high) / 2, (high - low) / 2
-    return around((c, c, 2 * c, Fraction(1), Fraction(1)),
-                          (h, h, 2 * h, Fraction(1), Fraction(1)), together=together)
-
-
-LOEWNER = Task(line("0.0150", "0.0280"), Settings("loewner"))
+LOEWNER = Task(line("0.0160", "0.0280"), Settings("loewner"))
 THESIS = Task(line("0.0272", "0.0273", together=False), Settings("thesis", digits=20))
 TASKS = [LOEWNER, replace(LOEWNER, settings=Settings("loewner", 13)),
          replace(LOEWNER, settings=Settings("loewner", 13, stubborn=True)),
@@ -57,6 +47,7 @@ def test_a_limit_ends_every_search_at_the_same_prism(task):
             assert grow(task, **limit, threads=threads) == one
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("task", [LOEWNER, replace(
     THESIS, settings=Settings("thesis", digits=2000))])
 def test_threads_wait_until_the_search_is_set_up(task):
@@ -68,6 +59,7 @@ def test_threads_wait_until_the_search_is_set_up(task):
         assert search.view(True).text == one.text and search.view().counts == one.counts
 
 
+@pytest.mark.slow
 def test_what_is_left_goes_on_in_another_search():
     """By its cells, or by its text and hints: the parts together are the whole."""
     whole, one = grow(LOEWNER), grow(LOEWNER, leaves=300)
@@ -93,6 +85,7 @@ def gaps(text, rng):
     return text[:rng.randrange(len(text))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("task", TASKS)
 def test_gaps_are_filled(task):
     """Whatever was left untried, the tree is the same in the end."""
@@ -153,6 +146,7 @@ def test_the_prisms_tried_ahead_are_tried_once():
     assert search.view().counts == grow(task).counts
 
 
+@pytest.mark.slow
 def test_searches_in_several_threads_of_python():
     """Each has threads of its own."""
     tasks = [LOEWNER, TASKS[2], THESIS, replace(LOEWNER, xstar=chosen_start(LOEWNER))]

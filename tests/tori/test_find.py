@@ -7,10 +7,11 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
+from files import line
 
 from converse import ConverseError, FourierMap
 from converse.check import field
-from converse.model.map import LINE, MuldoonMap, SymplecticMap
+from converse.model.map import MuldoonMap, SymplecticMap
 from converse.model.problem import Problem
 from converse.tori import continuation, refinement
 from converse.tori.continuation import Way
@@ -36,11 +37,6 @@ POTENTIALS = {
     "a sublattice": (Problem(SymplecticMap([(2, 0), (1, 3, Fraction(1, 5))], ["0.01", "0.003"])),
                      "T49"),
     "a single direction": (Problem(SymplecticMap([(1, 1, Fraction(1, 5))], ["0.05"])), "T49")}
-
-
-def line(epsilon):
-    a = LINE * Fraction(epsilon)
-    return Problem(MuldoonMap(a, a, 2 * a))
 
 
 def exact_torus(torus):
@@ -95,6 +91,7 @@ def test_orbits_that_start_on_the_torus_stay_on_it(name):
             [float(a - b) for a, b in zip(at(0), at(-1))], abs=1e-13)
 
 
+@pytest.mark.slow
 def test_the_orbit_has_the_rotation_number_asked_for():
     """By the mean of x_{m+1} - x_m with a weight that is flat at both ends (Das, Saiki, Sander and
     Yorke)."""
@@ -112,6 +109,7 @@ def test_the_orbit_has_the_rotation_number_asked_for():
         (5 ** 0.5 - 1) / 2, abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem, rotation", [(Problem(MuldoonMap("0.98", 0, 0)), "golden"),
                                                (Problem(MuldoonMap("3", 0, 0)), "golden")])
 def test_beyond_the_frontier_nothing_is_found(problem, rotation):
@@ -122,6 +120,7 @@ def test_beyond_the_frontier_nothing_is_found(problem, rotation):
     assert reached == pytest.approx(caught.value.reached * float(problem.amplitude[0]))
 
 
+@pytest.mark.slow
 def test_a_common_factor_of_the_waves_changes_only_the_units():
     """The map of 100 y is the standard map: as many modes, and the same margin about."""
     found = []
@@ -133,6 +132,7 @@ def test_a_common_factor_of_the_waves_changes_only_the_units():
     assert found == [pytest.approx(found[0], rel=0.02)] * 3
 
 
+@pytest.mark.slow
 def test_a_torus_is_continued_from_another_one():
     first = find(Problem(MuldoonMap("0.6", 0, 0)), GOLDEN)
     direct, continued = (find(Problem(MuldoonMap("0.8", 0, 0)), GOLDEN, start=start)
@@ -152,6 +152,7 @@ def test_a_grid_that_is_too_small_is_said():
         find(Problem(MuldoonMap("0.9", 0, 0)), GOLDEN, points=256)
 
 
+@pytest.mark.slow
 def test_the_break_up_is_estimated():
     """On the way of the golden circle of the standard map, which ends at 0.971635."""
     with pytest.raises(NotFound, match="it breaks up near a = .*, by an estimate$") as caught:
@@ -170,6 +171,7 @@ def test_a_break_up_is_told_only_if_the_norms_grow_like_a_power(power, noise, en
     assert continuation.break_up(list(zip(part, norm))[1:]) is None
 
 
+@pytest.mark.slow
 def test_the_constant_amplitudes_come_first_and_the_named_parameter_is_told():
     """K2 stays as it is while K1 grows: the golden circle is gone at K1 = 0.131."""
     family = SymplecticMap([(1, 0, "-1/2"), (3, 0, "-1/2")], [0, "0.05"], [[1, 0]], ["0.4"], ["K1"])
@@ -181,6 +183,7 @@ def test_the_constant_amplitudes_come_first_and_the_named_parameter_is_told():
         find(strong, "golden", points=1 << 10)
 
 
+@pytest.mark.slow
 def test_refinement_begins_with_what_is_below_the_noise(monkeypatch):
     """It belongs to the errors of the other coefficients: without it E is much larger, 7e-10."""
     begun = []
@@ -247,6 +250,7 @@ def test_the_basis_of_a_group_is_triangular_in_the_frame():
     assert default_frame(family(line("0.002"))[0]) == ((1, 1), (1, -1))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["two waves", pytest.param("phases", marks=pytest.mark.slow)])
 def test_refinement_mends_a_torus(name, monkeypatch):
     """A continuation that ends 1e-6 off, in a few modes, makes no difference."""
@@ -334,6 +338,7 @@ def test_what_error_of_a_torus_will_do(margin, part):
     assert accepted(margin) == part
 
 
+@pytest.mark.slow
 def test_a_grid_that_memory_does_not_hold_is_refused(monkeypatch):
     monkeypatch.setattr(continuation, "free_memory", lambda: 10 ** 5)
     with pytest.raises(NotFound, match="takes a grid of 768 points and 0.000998 GB of memory"):
@@ -392,7 +397,8 @@ def test_pieces_of_a_range(problem, rotation, count):
         pieces[0].x(theta, 1.5)
 
 
-@pytest.mark.parametrize("ends", [("0.3", "0.85"), ("-0.85", "-0.3")])
+@pytest.mark.parametrize("ends", [
+    ("-0.85", "-0.3"), pytest.param(("0.3", "0.85"), marks=pytest.mark.slow)])
 def test_pieces_are_as_long_as_their_degree_permits(ends, monkeypatch):
     """On either side of the map without potential: no trial is lost, and no turn in balls."""
     residuals, words, errors = [], [], refinement.errors
@@ -404,6 +410,7 @@ def test_pieces_are_as_long_as_their_degree_permits(ends, monkeypatch):
     assert max(torus.degree for torus in pieces) in range(12, MOST_DEGREE + 1)
 
 
+@pytest.mark.slow
 def test_a_piece_that_is_too_long_is_cut(monkeypatch):
     """If the end of the tori is thought to be far away."""
     words = []
@@ -431,6 +438,7 @@ def test_rounded_coefficients_leave_what_the_theorem_needs():
     assert rounding < aim.needed / 100 / 200
 
 
+@pytest.mark.slow
 def test_a_range_that_goes_too_far():
     with pytest.raises(NotFound, match="no torus of this rotation number") as caught:
         find(Problem(MuldoonMap(("0.5", "1.2"), 0, 0)), GOLDEN, points=1 << 11)
@@ -473,6 +481,7 @@ def test_the_degree_follows_from_the_powers_above_the_noise(heights, least, degr
     assert series_degree(sizes, least) == pytest.approx(degree, abs=0.9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name, frame, alpha", [
     ("golden", ((1,),), (1,)), ("T49", ((1, 1), (1, -1)), (1, 4)),
     pytest.param("V1", ((1, 1), (1, -1)), (1, 6), marks=pytest.mark.slow)])
