@@ -9,6 +9,7 @@ import sysconfig
 from pathlib import Path
 
 import pytest
+from conftest import ROOT
 
 import converse
 
@@ -16,7 +17,6 @@ import kernels
 from kernels import build
 from moments import PATIENCE
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 needs_gcc = pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
 
 

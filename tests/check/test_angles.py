@@ -79,6 +79,7 @@ def test_integers_say_the_same(proof):
         assert criterion.excluded(check.ROOT)[0]
 
 
+@pytest.mark.slow
 def test_where_tori_are_seen_nothing_is_verified(proof, run, monkeypatch):
     """The line at 0.002, with the tree of 0.018; and three standard maps, each with circles."""
     monkeypatch.setattr(check, "MAX_PIECES", 16)
@@ -153,6 +154,7 @@ def test_a_cut_of_v2_in_a_file_of_two_angles(run):
     assert "cuts an angle or a parameter that there is not, at node 0" in err
 
 
+@pytest.mark.slow
 def test_parts_of_three_angles(run):
     """A leaf is linked to a part at the same x*, whose region has to hold it."""
     waves = line("0.018")               # of which B is known
@@ -302,6 +304,7 @@ def test_a_claim_in_one_angle():
     assert len(other.reduced.xstar) == 3 and other.reduced.waves == other.waves
 
 
+@pytest.mark.slow
 def test_a_map_along_a_diagonal(run):
     """V = 1.1 cos(y0 + y1)/2 is the standard map at 1.1 in the angle y0 + y1, and at 0.9 there are
     circles; x* is where the force is 0."""

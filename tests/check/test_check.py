@@ -357,7 +357,6 @@ def test_a_spot_check_cannot_be_foreseen(deep, run, monkeypatch):
     assert len(set(seen[:20])) == 20 and set(seen[:20]) != set(seen[20:])
 
 
-@pytest.mark.quick
 def test_a_spot_check_that_misses_the_false_leaf_verifies_nothing(moving, run):
     """Of the segment from 0.0120 only the upper half is proved, and the lower is one leaf."""
     text, tree = moving["segment"], tree_of(moving["segment"])
@@ -2469,7 +2468,6 @@ def at_once(text, centre, half, together):
     return bool(claim.examined) and check.Criterion(claim).at_once()
 
 
-@pytest.mark.quick
 def test_at_once(texts, generator, monkeypatch):
     """True above B = 10/3, false below, of either sign; false with the origin in the box."""
     monkeypatch.setattr(check, "torus_bound", lambda fixed, *_: 4 * fixed.one)      # unused

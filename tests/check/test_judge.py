@@ -18,6 +18,7 @@ def folder(root):
     return root / "golden_outputs/tori"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [CHEAP, *(
     pytest.param(name, marks=pytest.mark.slow) for name in (
         "standard-0.95.torus.gz", "phases.torus", *["line-0.004.torus"] * (TORTURE > 1)))])

@@ -161,6 +161,7 @@ def test_wrong_files_are_rejected(both, run, name):
     assert (status, out) == (1, "") and why in err and err.count("\n") == 1, err
 
 
+@pytest.mark.slow
 def test_a_leaf_s_without_shifts(both, run):
     """So what is wrong above is that the region moves; 0 moves nothing, in either line."""
     for link in (with_s(both), with_lines(with_s(both), 0, v0="1 1.01", v1="1 1.01 0")):
@@ -240,6 +241,7 @@ def test_a_link_that_misses_at_one_end_of_the_parameters(both):
     assert len(set(map(tuple, out))) == 1
 
 
+@pytest.mark.slow
 def test_links_of_regions_that_move_alike(run):
     """They lose nothing: the later region is hardly wider than the leaf."""
     shifts = [("0.003", "-0.002")]
@@ -252,6 +254,7 @@ def test_links_of_regions_that_move_alike(run):
     assert run(file_of(**link))[0] == 0
 
 
+@pytest.mark.slow
 def test_a_parameter_that_moves_no_wave(idle, run):
     """Its shifts count, in links and in prisms."""
     for line, at in (("v0", 3), ("v1", 3)):

@@ -273,6 +273,7 @@ def test_a_link_to_the_same_place(tree, run):
     assert run(file_of("0aa", parts=[(XSTAR, *HALF, tree)]))[0] == 0
 
 
+@pytest.mark.slow
 def test_links_with_parameters(run):
     """Of each slice of the parameters by its own l and its own bound of beta."""
     more = {"waves": MOVING}

@@ -35,6 +35,7 @@ def answers(call, items, jobs=2):
         yield from found
 
 
+@pytest.mark.slow
 def test_results_are_in_order_and_few_are_in_memory(tmp_path):
     taken = []
 
@@ -48,6 +49,7 @@ def test_results_are_in_order_and_few_are_in_memory(tmp_path):
     assert [n for n, _ in found] == [n * n for n in range(1, 40)]
 
 
+@pytest.mark.slow
 def test_as_many_processes_as_there_is_work(begun):
     assert {*answers(calls.process_id, range(100), 3)} <= {each.pid for each in begun}
     assert len(begun) <= 3
@@ -80,6 +82,7 @@ def test_a_process_that_dies_before_its_first_word_is_told(capfd, monkeypatch, p
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.slow
 def test_what_cannot_be_sent_fails():
     """The call, or its result."""
     with pytest.raises(AttributeError, match="pickle"):

@@ -91,6 +91,7 @@ def test_the_golden_circle_is_verified(run):
     assert run(gzip.compress(sealed(BODY).encode()))[:2] == (0, out)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("digits", [20, 66, 70])
 def test_large_coordinates_of_the_rotation_do_not_make_its_decimals_false(run, digits):
     """They cancel, and with 256 bits of t they would leave few true decimals, or none."""

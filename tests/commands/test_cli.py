@@ -182,6 +182,7 @@ def test_a_part_of_the_torus(run):
     assert "whose successor of x* lies in the region" in out and "only a part of the torus" in out
 
 
+@pytest.mark.slow
 def test_python_m(sample):
     for module, status in ("converse", 1), ("converse.check", 2):
         result = subprocess.run([sys.executable, "-m", module,
@@ -198,6 +199,7 @@ def test_marked_backup_is_no_proof(run, sample, tmp_path):
     assert status == 4 and one_line(err) and "not a proof" in err
 
 
+@pytest.mark.slow
 def test_the_sharper_method(run, root, tmp_path):
     sample, path = root / "inputs" / "trig180.in", tmp_path / "a.proof"
     status, out, err = run("--method", "loewner", "--together", "-b", path, "--jobs", "2",
@@ -260,6 +262,7 @@ def test_layouts(run, text, output):
     assert out.split("+" * 48)[1] == output.split("+" * 48)[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("environment", [{}, {"LC_ALL": "C", "PYTHONIOENCODING": "ascii"}])
 def test_foreign_letters_in_comments(command, environment, tmp_path):
     status, out, err = command("-b", tmp_path / "b", stdin=GOOD + "\u03b5 \u2264 1".encode(),
@@ -346,6 +349,7 @@ def test_a_figure_replaces_nothing_but_a_figure(run, sample, tmp_path, name, oth
         assert (status, err) == (0, "") and path.stat().st_size > 1000
 
 
+@pytest.mark.slow
 def test_a_figure_of_nothing(run, sample, tmp_path):
     for name in "a.pdf", "a.svg":
         assert run("--time-limit", "0", "-g", tmp_path / name, sample)[0] == 1

@@ -223,7 +223,7 @@ def test_help_and_version(run):
     *[(["trig", SMALL, bad], "is neither a number below 10^9") for bad in (
         "x", "1e10", "nan", "inf", "1e400", "1e9999999999", "1/0", "1:2", "1:2:3:4", "", "1_0")],
     (["trig", SMALL, "1e6"], "too far to be followed"),
-    (["trig", "5,7/999999999", "0.01"], "from 1 to 10000000"),
+    (["trig", "5,7/999999999", "0.01"], "whole number q from 1 to 10000000, not"),
     *[(["trig", SMALL, bad], "range of no values") for bad in (
         "1:2:0", "2:1:0.1", "0:1:1e-9")],
     (["none", SMALL, "0.01"], "neither a potential nor a file"),
@@ -239,16 +239,11 @@ def test_help_and_version(run):
     (["trig", SMALL, "0.01", "--at", "K=1"], "trig has no parameters"),
     (["DIR/terms.json", SMALL, "0.01", "--at", "K=1"], "there is no parameter K"),
     (["DIR/terms.json", SMALL, "0.01", "--at", "K"], "write NAME=NUMBER"),
-    (["trig", "5,7/999999999", "0.01"], "whole number q from 1 to 10000000, not"),
 ])
 def test_bad_usage(run, tmp_path, arguments, words):
-    (tmp_path / "terms").write_text("1 0 0 1\n")
     (tmp_path / "terms.json").write_text('{"harmonics": [{"k": [1, 0], "amplitude": 1}]}')
-    (tmp_path / "one").write_text("1,2/3\n1/3\n")
     (tmp_path / "other.npz").write_text("mine\n")
     (tmp_path / "other.svg").write_text("<?xml version='1.0'?><svg/>\n")
-    (tmp_path / "two").write_text("1,2/3\n")
-    (tmp_path / "empty").write_text("# nothing\n")
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
     status, out, err = run(*[a.replace("DIR", str(tmp_path)) for a in arguments])
     assert (status, out) == (2, "") and one_line(err) and words in err, err
@@ -256,9 +251,7 @@ def test_bad_usage(run, tmp_path, arguments, words):
 
 
 @pytest.mark.parametrize("text, words", [
-    (b"", "line 1: the input is empty"), (b"1 0 x 1\n", "line 1: 'x' is not a decimal"),
-    (b"{", "not valid JSON"), (b"\xff\xfe\n", "is not text in UTF-8, perhaps in UTF-16"),
-    (b'{"harmonics": [{"k": [1, 0]}]}', "harmonic 1: amplitude is missing"),
+    (b"{", "not valid JSON"),
     (b'{"harmonics": [{"k": [1, 0], "amplitude": [1, 2]}]}',
      "an amplitude goes from 1 to 2; give one number"),
     (b'{"parameters": {"K": [1, 2]}, "harmonics": [{"k": [1, 0], "amplitude": {"K": 1}}]}',

@@ -86,6 +86,7 @@ def test_a_theorem_with_choices(run, tmp_path):
     assert re.search(r"\|k\| = (\d+ )?\|[^|]*k\[0\][^|]*\| \+ (\d+ )?\|", out)
 
 
+@pytest.mark.slow
 def test_a_theorem_for_a_negative_rotation_number(run, tmp_path):
     problem = tmp_path / "half.json"
     problem.write_text('{"harmonics": [{"k": [1], "amplitude": 0.5, "phase": "-1/3"}]}')
@@ -94,6 +95,7 @@ def test_a_theorem_for_a_negative_rotation_number(run, tmp_path):
     assert "omega = -1+t = -0.38196601125010515" in out
 
 
+@pytest.mark.slow
 def test_a_start_from_a_certificate(run, tmp_path):
     file = tmp_path / "golden.torus.gz"
     problem = tmp_path / "standard.in"
@@ -206,6 +208,7 @@ def test_flags_that_may_be_the_reason_are_named(run, monkeypatch):
     assert "\nNot proved it lacks\nRotation   golden, " in out
 
 
+@pytest.mark.slow
 def test_each_step_of_a_long_run_is_told(run, monkeypatch):
     monkeypatch.setattr(cli, "QUIET_SECONDS", -1)
     status, _, err = run(K09, "--rotation", "golden")
@@ -286,6 +289,7 @@ def test_a_process_that_dies_is_told(tmp_path):
     assert one_line(run.stderr) and "died, perhaps for lack of memory" in run.stderr
 
 
+@pytest.mark.slow
 def test_the_time_limit(run, tmp_path, monkeypatch):
     """It ends the search, or the check; the torus that was found is there, and is a start."""
     file, found = tmp_path / "golden.torus", tmp_path / "golden.torus.found"
@@ -308,6 +312,7 @@ def test_the_time_limit(run, tmp_path, monkeypatch):
     assert [each.name for each in tmp_path.iterdir()] == [file.name]
 
 
+@pytest.mark.slow
 def test_a_certificate_is_one_runs_alone(run, tmp_path):
     """Another run that is to write the same file is refused while the first one works, and a file
     that is there stays."""
@@ -367,6 +372,7 @@ def test_bounds_are_rounded_to_the_safe_side():
     assert report._up(float("inf")) == "unbounded" and report._down(0.0) == "0"
 
 
+@pytest.mark.slow
 def test_a_range_is_told_exactly():
     """In the parameter of the input; in s, where only the torus is at hand."""
     golden = tori.read_rotation("golden")

@@ -65,6 +65,7 @@ def test_the_checker_confirms_it(made):
     assert "every k in [1.5, 2], every b in [0, 0.5]" in result.text
 
 
+@pytest.mark.slow
 def test_one_run_or_several(made, tmp_path):
     path, told = tmp_path / "map", []
     diagram.explore(STRONG, path=path, budget="0.03", jobs=1, tell=told.append)
@@ -141,6 +142,7 @@ def test_the_command(input_file, tmp_path, capsys):
     assert "k in [1.2, 2]; no torus was proved; between" in " ".join(out.split())
 
 
+@pytest.mark.slow
 def test_nothing_proved(input_file, capsys):
     assert cli.main([input_file({"k": ["0.1", "0.2"]}), "--budget", "0.01"]) == 3
     assert "every k >= 2.0001" in capsys.readouterr().out       # by one point

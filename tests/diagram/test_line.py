@@ -41,6 +41,7 @@ def test_a_range_over_whose_middle_an_x_is_known_is_halved_without_a_scan(monkey
     assert found.proof is None and ("1.8749", "0") in found.xstars
 
 
+@pytest.mark.slow
 def test_what_one_x_leaves_is_linked_to_others():
     """The first x* leaves four clusters."""
     found = excluded("0.52", "0.53", [("1.7969", "0")], 1 << 16)
@@ -119,6 +120,7 @@ def test_a_run_is_proved_up_to_the_last_value_that_can_be(monkeypatch, last):
     assert 0 <= last - max(proved) <= 3 * runs.grain and not runs._proofs()
 
 
+@pytest.mark.slow
 def test_a_torus_is_tried_as_soon_as_one_is_seen_and_then_the_grid_is_looked_at():
     runs = some.Runs(Diagram.of(cosines(K1=(0, 1))), [])
     assert [task.effort for task in runs.round()] == [0] * (some.BORDERS + some.LOOKS)

@@ -117,6 +117,7 @@ def test_each_kind_in_its_place(made_up):
     assert share(rows, is_dark) == pytest.approx(0.25, abs=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tree", ["2?P", "2P?", "2P", "3?0PP", "20PP?", "42P?P", "2S?"])
 def test_untried_prisms_are_not_hidden(made_up, shown, tree):
     """Where parameters were cut, proved prisms may share the place."""
@@ -147,6 +148,7 @@ def test_tiny_undecided_prisms_are_seen(made_up, shown, tree):
     assert share(rows, lambda pixel: is_red(pixel) or is_reddish(pixel)) > 1e-5
 
 
+@pytest.mark.slow
 def test_tiny_untried_prisms_are_seen(made_up, shown):
     rows = shown(made_up("0P1P" * 20 + "?", **ELSEWHERE), 100)
     assert share(rows, is_white) > share(shown(made_up("P", **ELSEWHERE), 100), is_white) == 0
@@ -246,6 +248,7 @@ def test_into_axes(made_up):
     assert star.get_xydata()[0] == pytest.approx([2 * x for x in captions.star(proof)])
 
 
+@pytest.mark.slow
 def test_without_a_caption(made_up, tmp_path):
     """Only the prisms, their axes and the legend, in every format."""
     pytest.importorskip("matplotlib")

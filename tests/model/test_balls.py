@@ -3,6 +3,7 @@
 import sys
 import threading
 
+import pytest
 from flint import ctx
 
 from converse import Problem, orbits, tori
@@ -10,6 +11,7 @@ from converse.model.balls import precision
 from converse.model.map import SymplecticMap
 
 
+@pytest.mark.slow
 def test_proofs_side_by_side(monkeypatch):
     """Tori and orbits in threads of one process: each proof is what it is alone, whatever the user
     has set, and that is set again afterwards."""

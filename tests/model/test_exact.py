@@ -52,6 +52,7 @@ def test_decimal_text_is_exact(x, places):
     assert "E" not in text and len((text + ".").split(".")[1]) >= places
 
 
+@pytest.mark.slow
 def test_decimal_text():
     assert decimal_text(Fraction(617, 1000)) == "0.617"
     assert decimal_text(Fraction(1, 2 ** 30)) == str(Decimal(5 ** 30).scaleb(-30))

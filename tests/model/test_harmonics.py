@@ -253,6 +253,7 @@ def test_the_inputs_are_theorems(root, name, tmp_path):
     assert part.verify().verdict == "verified in part"
 
 
+@pytest.mark.slow
 def test_one_map_in_both_inputs():
     """The same theorem of the standard map, shifted, mirrored, in either angle, along y0 + y1."""
     for amplitude, k, phase in (("1", (1, 0), 0), ("1", (1, 0), "-1/2"), ("-1", (1, 0), "1/3"),

@@ -44,6 +44,7 @@ def test_a_given_exponent_is_late():
     assert (same.below.eps, same.above.eps) == (free.below.eps, free.above.eps)
 
 
+@pytest.mark.slow
 def test_the_onsets_of_the_thesis_vectors():
     """Thesis, section 2.3: trig's first exponent leaves zero when the state contracts; 0.0080."""
     below, above = orbits.onset(orbits.trig, (1432, 1897), 2513, step=0.0005, width=5e-5)

@@ -85,6 +85,7 @@ def test_soft_directions_that_turn():
             assert state.exponents == pytest.approx(carried(state, 40), abs=1e-12)
 
 
+@pytest.mark.slow
 def test_it_leaves_a_saddle_for_the_lower_side():
     """From the least V of a skew potential both sides lead down, to the same maximum."""
     for skew in (0.3, -0.3):

@@ -64,6 +64,7 @@ def test_a_row_for_each_state(plane, line):
         assert panel.get_title(loc="left").startswith("ε = %r, 3/8: minimum" % state.eps)
 
 
+@pytest.mark.slow
 def test_a_figure_of_a_state(plane, line):
     """A Figure that a notebook shows, with letters of eight points at least; or only the points, in
     Axes of one's own."""

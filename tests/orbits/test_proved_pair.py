@@ -145,6 +145,7 @@ def test_bad_digits():
             golden(4, 0.5).minimax().prove(digits)
 
 
+@pytest.mark.slow
 def test_proved_pairs_beyond_the_reach_are_refused():
     with pytest.raises(NotProved, match="decimal places"):
         golden(12, 0.3).minimax().prove()
@@ -152,6 +153,7 @@ def test_proved_pairs_beyond_the_reach_are_refused():
         golden(5, 0.5).minimax().prove(980)     # the most that are tried
 
 
+@pytest.mark.slow
 def test_a_flux_below_the_least_double():
     """2 eps/(4 pi^2), at the two fixed points."""
     pair = orbits.follow(orbits.standard, (0,), 1, [1e-323])[0].minimax()

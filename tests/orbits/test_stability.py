@@ -135,6 +135,7 @@ def test_small_residues_have_all_their_digits(p, q, eps):
         assert state.exponents[0] == pytest.approx(2 * math.asinh(math.sqrt(eps) / 2), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_multipliers_against_fifty_digits():
     kinds = set()
     for state in stationary():

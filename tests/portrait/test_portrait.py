@@ -372,6 +372,7 @@ def test_no_words_say_less_undecided_than_there_is(strips, monkeypatch):
     assert "undecided: 9.61%" in title(strips[0])
 
 
+@pytest.mark.slow
 def test_what_was_only_read_is_told_in_the_headline(strips, tmp_path):
     """And a portrait of another release is neither continued nor relabelled."""
     found, path = strips
@@ -392,6 +393,7 @@ def test_what_was_only_read_is_told_in_the_headline(strips, tmp_path):
         portray(path=other, resume=True)
 
 
+@pytest.mark.slow
 def test_the_figure_has_the_coordinates_of_the_portraits_of_orbits(strips):
     """(y, J): the golden circle and its image pass where something is undecided, not so the
     points of the island about (pi/2, 0), nor the golden circle drawn at y' - y."""

@@ -2,16 +2,15 @@
 
 import re
 from fractions import Fraction
-from pathlib import Path
 
 import chart
 import mpmath
 import pytest
+from conftest import ROOT
 
 from converse import prove, read_input
 from converse.model.map import LINE
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 INPUTS = sorted((ROOT / "inputs").glob("*.in"))
 THESIS = (ROOT / "docs/1989.md").read_text("utf-8")
 LEAST_MULTIPLE = {"a": 1, "b": 1, "c": 2}              # of LINE epsilon

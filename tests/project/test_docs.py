@@ -4,9 +4,9 @@ import re
 import shlex
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from conftest import ROOT
 
 from converse import check
 from converse.commands import map as map_cli
@@ -18,7 +18,6 @@ from converse.version import __version__
 
 from moments import PATIENCE
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 FOLDERS = {page.name: page.parent for page in PAGES}
 TEXTS = {page.name: page.read_text("utf-8") for page in PAGES}

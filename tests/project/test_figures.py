@@ -1,18 +1,14 @@
 """docs/figures.csv lists the pictures of docs/, pictures show the tables of docs/data/, and the
 values that are proved are the same in all pictures, pages and scripts."""
 
-import csv
 import re
 import runpy
-from pathlib import Path
 
 import chart
 import pytest
 import sides
+from pages import DOCS, PAGES, ROOT, table
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-DOCS = ROOT / "docs"
-PAGES = {page.name: page.read_text("utf-8") for page in (ROOT / "README.md", *DOCS.rglob("*.md"))}
 FIGURES = runpy.run_path(str(DOCS / "figures.py"))
 ROWS = {row["picture"]: row for row in FIGURES["rows"]()}
 WORDS = {path.stem: "\n".join(re.findall("<!-- (.*?) -->", path.read_text("utf-8"), re.DOTALL))
@@ -74,11 +70,6 @@ def test_scripts_draw_these_values():
     assert toughest["TORUS_AT"][-1] == float(TORUS)
     assert chart.LAST[0] == NO_TORUS
     assert [row[2] for row in sides.LONGEST] == [CIRCLE, "0.0120", "0.0121", TORUS, NO_CIRCLE_ALONE]
-
-
-def table(name):
-    with open(DOCS / "data" / (name + ".csv"), encoding="ascii", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def test_the_readme_and_the_frontier_say_the_same():

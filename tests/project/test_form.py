@@ -128,10 +128,3 @@ def test_a_mass_matrix():
         q = p - slope(TWO, x)
         for found, expected in zip(here.map(*variables(x, p)), variables(x + mass @ q, q)):
             assert found == pytest.approx(expected, abs=1e-12)
-
-
-def test_the_map_with_old_values_is_not_symplectic():
-    x, e = 0.3, 1e-6
-    bend = (one(x + e) - one(x - e)) / (2 * e)
-    assert np.linalg.det([[1, 1], [-bend, 1]]) == pytest.approx(1 + bend)
-    assert abs(bend) > 0.1

@@ -1,6 +1,7 @@
 """The rooms of the package: who may import whom.  docs/development/architecture.md draws it."""
 
 import ast
+import functools
 from graphlib import TopologicalSorter
 
 import pytest
@@ -18,20 +19,23 @@ CHECKED = ["", "commands", "diagram", "storage", "tori"]        # may import the
 PACKAGE = ROOT / "converse"
 
 
+@functools.cache
 def modules():
-    """The names of all modules, without "converse.", and their files."""
+    """The names of all modules, without "converse.", their files, and what there is to see in them:
+    imports and calls."""
     found = {}
     for path in sorted(PACKAGE.rglob("*.py")):
         parts = path.relative_to(PACKAGE).with_suffix("").parts
-        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path, [
+            node for node in ast.walk(ast.parse(path.read_text("utf-8")))
+            if isinstance(node, (ast.Import, ast.ImportFrom, ast.Call, ast.Name, ast.Attribute))]
     return found
 
 
-def imports(name, path, known):
+def imports(name, path, nodes, known):
     """The modules of the package that a module imports, anywhere in its file."""
-    tree = ast.parse(path.read_text("utf-8"))
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Import):
             targets = [alias.name.split(".", 1) for alias in node.names]
             targets = [rest[0] if rest else "" for first, *rest in targets if first == "converse"]
@@ -60,10 +64,11 @@ def room(name):
 def arrows():
     files = modules()
     known = {"_native", *files}
-    return {(name, target) for name, path in files.items()
-            for target in imports(name, path, known)}
+    return {(name, target) for name, (path, nodes) in files.items()
+            for target in imports(name, path, nodes, known)}
 
 
+@pytest.mark.slow
 def test_every_room_has_its_floor():
     assert {"_native", *map(room, modules())} == {*BESIDE, *sum(FLOORS, [])}
     assert len(FLOORS) <= 8
@@ -82,6 +87,7 @@ def test_no_arrow_leads_upwards(arrows):
     assert [arrow for arrow in arrows if not right(*arrow)] == []
 
 
+@pytest.mark.slow
 def test_no_circle(arrows):
     below = {}
     for name, target in arrows:
@@ -89,15 +95,15 @@ def test_no_circle(arrows):
     assert len(list(TopologicalSorter(below).static_order())) > 40          # or CycleError
 
 
+@pytest.mark.slow
 def test_results_are_bound_in_one_place():
     """The methods that rooms above provide are those that results ask for, and their functions are
     there; nothing else is imported by a name in a string."""
     for method, home in HOMES.items():
         assert callable(provided(method)), home
     asked, finders = set(), set()
-    for name, path in modules().items():
-        tree = ast.parse(path.read_text("utf-8"))
-        for node in ast.walk(tree):
+    for name, (_, nodes) in modules().items():
+        for node in nodes:
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "provided":
                 asked.add(ast.literal_eval(node.args[0]))
             if "import_module" in (getattr(node, "attr", ""), getattr(node, "id", "")):

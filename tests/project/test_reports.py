@@ -2,9 +2,9 @@
 of reports that the commands print here.  (Those of diagrams are in tests/diagram.)"""
 
 import re
-from pathlib import Path
 
 import pytest
+from conftest import ROOT
 
 from converse import check
 from converse.commands import orbits as orbits_cli
@@ -12,7 +12,6 @@ from converse.commands import portrait as portrait_cli
 from converse.commands import prove as cli
 from converse.commands import tori as tori_cli
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 INPUTS, GOLDEN = ROOT / "inputs", ROOT / "golden_outputs"
 LABEL = r"(?m)^([A-Zx][^:\n>]*?)\.?(?: {2,}| : | :$)"
 

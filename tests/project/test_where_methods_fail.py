@@ -6,7 +6,6 @@ import pytest
 from conftest import around
 
 import converse
-from converse.model.map import LINE
 
 import kernels
 from truth import cube_of, cube_point, decimal, point_of, rng_for, step, uniform
@@ -21,28 +20,8 @@ def problem(a, b, c, v=FULL):
                           tuple(Fraction(x) for _, x in pairs), ())
 
 
-def line(epsilon):
-    """One point of the thesis's line."""
-    a = decimal(LINE * Fraction(epsilon), 8)
-    return problem((a, 0), (a, 0), (2 * a, 0))
-
-
 def reasons(proof):
     return dict(zip(REASONS, proof.counts.reasons))
-
-
-def test_digits_shrink(root):
-    """Three places prove 0.0274 and four 0.0272; with fewer the rigorous tries fail, and say so."""
-    for name, enough in (("trig274", 3), ("trig272", 4)):
-        proofs = [converse.prove(converse.read_input(root / "inputs" / (name + ".in")), digits=d)
-                  for d in range(1, 8)]
-        assert [p.no_tori for p in proofs] == [d >= enough for d in range(1, 8)]
-        for proof in proofs[:enough - 1]:
-            lost = reasons(proof)
-            assert lost["disagree"] + lost["singular"] > 0
-            assert "rigor" in proof.report() or "double-precision" in proof.report()
-        prisms = [p.counts.proved for p in proofs[enough - 1:]]
-        assert prisms[0] > prisms[-1]           # it costs prisms first
 
 
 def needle(rng, thin):
@@ -86,20 +65,6 @@ def test_exactly_flat_prisms_are_given_up_or_right():
     assert given_up < 50
 
 
-def test_towards_the_wall():
-    """The thesis's criterion has a wall near 0.0270: prisms and depth grow without bound."""
-    table = []
-    for epsilon in ("0.0280", "0.0276", "0.0274", "0.0272", "0.0271"):
-        proof = converse.prove(line(epsilon), depth=60, method="thesis")
-        assert proof.no_tori
-        table.append((proof.counts.proved, proof.counts.most_cuts))
-    assert table == sorted(table)
-    assert table[-1][0] > 8 * table[1][0]
-    beyond = converse.prove(line("0.0265"), depth=16, method="thesis")
-    assert not beyond.no_tori and beyond.counts.undecided == 1
-    assert sum(reasons(beyond).values()) > 0
-
-
 @pytest.mark.parametrize("a, b, c", [
     (("0.30", "0.001"), ("0.32", "0.001"), ("0.62", "0.001")),
     (("0.9", "0"), ("0.3", "0"), ("0.5", "0")),
@@ -136,18 +101,3 @@ def test_huge_angles():
     assert converse.prove(there(10**6), method="thesis").no_tori
     far = converse.prove(there(10**20), method="thesis")
     assert not far.no_tori and reasons(far)["centre"] > 0
-
-
-def test_time_limit():
-    """A search that would take ages stops when it is told to, and says what it left."""
-    proof = converse.prove(line("0.0262"), depth=10000, stubborn=True, time_limit=1.0,
-                           method="thesis")
-    assert not proof.no_tori
-    assert "ended before the whole region was examined" in proof.report()
-    assert converse.prove(line("0.0280"), time_limit=0, method="thesis").tree == ""
-
-
-def test_many_digits():
-    """A thousand places, for those who want them."""
-    proof = converse.prove(line("0.0276"), digits=1000)
-    assert proof.no_tori and proof.digits == 1000

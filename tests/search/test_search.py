@@ -317,7 +317,7 @@ def test_the_finest_index():
         assert all(max(cuts) <= 61 for _, cuts, _ in grown.cells)
 
 
-@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("threads", [1, pytest.param(3, marks=pytest.mark.slow)])
 def test_stopped_in_the_middle_of_a_prism(threads):
     """The prisms at hand are forgotten, with their statistics; then the search goes on as if
     nothing had been."""

@@ -68,7 +68,8 @@ def refused(path, data):
     return str(error.value)
 
 
-@pytest.mark.parametrize("name", ["silver", "golden"])
+@pytest.mark.parametrize("name", [
+    "silver", pytest.param("golden", marks=pytest.mark.slow)])
 def test_a_name_in_a_file_names_nothing(tmp_path, name):
     """The polynomial, its root and the vector do."""
     body = tori.prove(StandardMap("0.1"), "golden").certificate.partition("checksum")[0].replace(

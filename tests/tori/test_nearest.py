@@ -9,7 +9,7 @@ from converse.tori.nearest import rotation_of
 
 
 @pytest.mark.parametrize("number, tolerance", [("0.618", "1/1000"), ("0.4", "1/100"),
-                                               ("2.29", "1e-5"), ("-0.3", "1e-6")])
+                                               ("-0.3", "1e-6"), ("2.29", "1e-5")])
 def test_a_noble_number_is_near(number, tolerance):
     rotation = nearest([number], tolerance)
     assert rotation.polynomial == (-1, 1, 1)

@@ -33,6 +33,7 @@ def test_circles_are_found_beyond_the_gaps(K1):
     assert x == pytest.approx(torus.x([1.0 + 40 * np.pi * w])[0], abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("K1", ["0.30", *(
     pytest.param(K1, marks=pytest.mark.slow) for K1 in ("0.515", "0.55"))])
 def test_where_absence_is_proved_nothing_is_found(K1):
@@ -40,6 +41,7 @@ def test_where_absence_is_proved_nothing_is_found(K1):
         find(two_harmonics(K1))
 
 
+@pytest.mark.slow
 def test_an_island_is_no_circle():
     """The chain of 163 islands at K1 = 0.587 is as regular as a circle."""
     seen = regular(Orbits(two_harmonics("0.587").potential()))

@@ -136,6 +136,7 @@ def test_a_root_must_be_isolated(root):
         Rotation("", (-2, 0, 1), root, ((0, 1),))
 
 
+@pytest.mark.slow
 @given(st.lists(st.integers(-9, 9), min_size=3, max_size=4).filter(lambda p: p[-1]))
 def test_irreducible_polynomials_have_no_rational_root(polynomial):
     rational = any(not evaluate(polynomial, Fraction(p, q))
@@ -143,6 +144,7 @@ def test_irreducible_polynomials_have_no_rational_root(polynomial):
     assert is_irreducible(tuple(polynomial)) is not rational
 
 
+@pytest.mark.slow
 @given(st.lists(st.integers(-50, 50), min_size=3, max_size=4).filter(
     lambda p: p[-1] and is_irreducible(tuple(p))), st.lists(st.fractions(max_denominator=99),
                                                           min_size=2, max_size=2))

@@ -30,7 +30,8 @@ CASES = {
 
 
 @pytest.fixture(scope="module", params=[
-    "golden", "phase", "line", pytest.param("phases", marks=pytest.mark.slow)])
+    "golden", "line",
+    *(pytest.param(name, marks=pytest.mark.slow) for name in ("phase", "phases"))])
 def proved(request):
     return prove(*CASES[request.param])
 
@@ -106,8 +107,9 @@ def test_orbits_stay_as_near_as_the_proved_distance_allows(proved):
             assert max(abs(a - b) for a, b in zip(y, there)) <= 2 * allowed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [
-    "golden", "phase", pytest.param("line", marks=pytest.mark.slow)])
+    "golden", *(pytest.param(name, marks=pytest.mark.slow) for name in ("phase", "line"))])
 def test_the_true_torus_is_where_it_was_proved_to_be(name):
     """A much more accurate torus is no further away than both distances allow.  Both have mean 0,
     and the true torus need not: a shift of theta by a distance moves x by as much times l0."""
