@@ -102,9 +102,8 @@ memcheck: $(VENV)/installed
 # Orbits of thousands of points are followed as those of hundreds; test_the_longest_orbits follows some.
 # SHARE="not slow" takes the share of them that make check takes.
 SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover search thesis) \
-    $(addprefix --ignore=tests/, loewner/test_margins.py prover/test_best_shifts.py \
-    $(addprefix orbits/test_, farey.py pictures.py points.py sweep.py) \
-    $(addprefix prover/test_, links.py parallel.py report.py shifts.py)) \
+    $(addprefix --ignore=tests/, loewner/test_margins.py orbits/test_pictures.py \
+    $(addprefix prover/test_, best_shifts.py links.py parallel.py report.py shifts.py)) \
     -k 'not dask and not long_call and not as_long_as and not are_long_only'
 
 # Safe path: the clone, where this starts, holds a core without sanitizers.

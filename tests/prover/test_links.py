@@ -229,7 +229,7 @@ def test_cells_are_linked_into_the_region_around_them():
 
 def test_counting():
     assert tree.count_linked("0a1PzU?") == 2
-    assert tree.most_cuts("00P1Pa1Pb") == 3 and tree.most_cuts("U") == 0
+    assert tree.most_cuts("00P1Pa1Pb") == 3 and tree.most_cuts("0P0UU") == 1
     assert tree.complete("0aP") and not tree.complete("0a")
 
 

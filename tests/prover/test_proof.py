@@ -23,7 +23,7 @@ from converse.model.problem import IDENTITY
 from converse.prover import native, run
 from converse.prover.report import verdict
 from converse.prover.resume import continued
-from converse.prover.settings import FILED, MAY_CHANGE, SETTINGS
+from converse.prover.settings import FILED, LIMIT, MAY_CHANGE, SETTINGS
 from converse.prover.tree import leaves
 from converse.storage import files
 from converse.version import __version__
@@ -648,13 +648,14 @@ def test_whole_numbers_are_those_of_numpy_too():
     proof = prove(LINE, depth=np.int64(50), jobs=np.int8(1))
     assert proof == prove(LINE, depth=50) and type(proof.depth) is int
     assert prove(LINE, digits=np.int32(20)).digits == 20
-    for options in {"depth": True}, {"jobs": 1.0}, {"jobs": 0}, {"digits": "9"}, {"depth": -1}:
+    for options in ({"depth": True}, {"jobs": 1.0}, {"jobs": 0}, {"digits": "9"}, {"depth": -1},
+                    {"depth": LIMIT + 1}):
         with pytest.raises(ValueError, match="%s must be a whole number" % [*options][0]):
             prove(LINE, **options)
 
 
 def test_the_method_of_settings_is_that_of_prove():
-    assert Settings().method == prove(LINE).method == "loewner"
+    assert Settings().method == prove(LINE, as_printed=False).method == "loewner"
     with pytest.raises(ValueError, match=r"digits \(--precision\) is of the method thesis alone"):
         prove(LINE, method="loewner", digits=20)
 
