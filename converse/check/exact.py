@@ -23,8 +23,8 @@ UNIT_BITS = 56                          # of the second variation
 PrismWave = collections.namedtuple("PrismWave", "k phase amplitude parts error")
 
 # A wave at a site: p cos y and p sin y, and of its parts, as (symbol, h cos y, h sin y); its
-# columns xi = k.L; bounds of |xi| and |w|.
-SiteWave = collections.namedtuple("SiteWave", "cosine sine parts columns size rest error")
+# columns xi = k.L; a bound of |w|.
+SiteWave = collections.namedtuple("SiteWave", "cosine sine parts columns rest error")
 
 # A site of a lane: its waves; E of step (C7); as doubles beta, and the reach of each wave.
 Site = collections.namedtuple("Site", "waves E beta reach")
@@ -131,7 +131,7 @@ class Lane:
                     push[i] += factor * cosine
                     E[i] += factor * mean
                     new[i] = [a - factor * b for a, b in zip(new[i], form)]
-            waves.append(SiteWave(cosine, sine, moved, xi, size, rest, error))
+            waves.append(SiteWave(cosine, sine, moved, xi, rest, error))
             reaches.append(reach / one)
         beta = [-2 * y for y in bend]       # in half units
         for at in DIAGONAL[len(beta)]:

@@ -41,19 +41,18 @@ def upper_root(x):
     return Fraction(math.isqrt(math.floor(x)) + 1, 2 ** 64)
 
 
-def exponential_above(x):
-    """A rational not below e^x, x >= 0."""
+def exponential_above(x, rounded=rounded_up, last=2):
+    """A rational not below e^x, x >= 0: of Taylor's series on [0, 1] all terms after the 12th are
+    at most `last` = 2 times the next."""
     if x > 1:
-        return rounded_up(exponential_above(x / 2) ** 2)
-    return rounded_up(sum([x ** j / math.factorial(j) for j in range(13)])
-                      + 2 * x ** 13 / math.factorial(13))
+        return rounded(exponential_above(x / 2, rounded, last) ** 2)
+    return rounded(sum([x ** j / math.factorial(j) for j in range(13)])
+                   + last * x ** 13 / math.factorial(13))
 
 
 def exponential_below(x):
     """A rational not above e^x, x >= 0."""
-    if x > 1:
-        return rounded_down(exponential_below(x / 2) ** 2)
-    return rounded_down(sum([x ** j / math.factorial(j) for j in range(13)]))
+    return exponential_above(x, rounded_down, 0)
 
 
 def evaluate(polynomial, x):

@@ -401,8 +401,8 @@ def delayed(torus, ring, f):
 
 
 def approximate_inverse(torus, ring, f, near):
-    """A polynomial with modes |k| <= near, near the inverse: chosen with doubles at points of a line
-    that winds about the torus, where k = (a, b) and s^j turn as often as the place of (k, j)."""
+    """A polynomial with modes |k| <= near, near the inverse: chosen with doubles along a line that
+    winds about the torus, where k = (a, b) and s^j turn as often as the place of (k, j)."""
     box, step = ring.box, torus.degree + 1
     deep, wide, high = [*map(power_of_two, (2 * step if step > 1 else 1, *[
         3 * math.floor(w * near) + 1 for w in torus.norm.widths()])), 1][:3]

@@ -170,7 +170,7 @@ def wave_quotients(names, draw):
         m[1:] = [0, 0]
     elif draw.random() < 0.3:
         m[0] = omega = 0
-    wave = names["SiteWave"](cosine, sine, parts, columns, None, rest, error)
+    wave = names["SiteWave"](cosine, sine, parts, columns, rest, error)
     slopes = sums.add_wave(wave, omega, m)
     form, bound = sums.form(), sums.error / 120
     for e in E:
