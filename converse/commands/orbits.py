@@ -145,29 +145,24 @@ class _Finding:
         say(text)
 
     def add(self, state):
+        from ..orbits.proved import NotProved, prove
         from ..orbits.report import pass_report, report
         self.states.append(state)
         self.drawn.append(state)
         self.tell("\n" + report(state))
         self.failed |= state.label in NO_MINIMUM
-        from ..orbits.proved import NotProved
         try:
             pair = state.minimax() if self.options.minimax else None
             if pair is not None:
                 self.tell(pass_report(pair))
             if self.options.prove:
-                self._prove(state, pair)
+                proof = prove(state) if pair is None else pair.prove()
+                self.drawn[-1] = proof if pair is None else proof.minimum
+                self.tell(proof.report())
         except ConverseError as reason:
             self.tell("%s : %s\n" % ("Not proved" if isinstance(reason, NotProved) else "No pass",
                                      plain(str(reason))))
             self.failed = True
-
-    def _prove(self, state, pair):
-        from ..orbits.proved import prove
-
-        proof = prove(state) if pair is None else pair.prove()
-        self.drawn[-1] = proof if pair is None else proof.minimum
-        self.tell(proof.report())
 
     def write_files(self):
         options = self.options

@@ -93,7 +93,7 @@ def test_find_minimax(run):
     assert "Residue of the minimax orbit : 0.2522989653\nFlux : 4.728387149e-06\n" in out
     assert "one negative direction" in out and "\nFlux : 4.7283871494" in out
     status, out, err = run("trig", "5,7/9", "0.02", "--minimax")
-    assert status == 0 and "Difference of action : 0.0001613288491\n" in out
+    assert (status, out) == (2, "") and one_line(err) and "one angle" in err
     status, out, err = run("standard", "8/21", "0.2", "--minimax")
     assert status == 0 and "Pass : too flat for doubles" in out
     status, out, err = run("standard", "8/20", "0.2", "--minimax")
@@ -169,7 +169,7 @@ def test_a_potential_in_a_file(run, root, tmp_path):
     status, out, err = run(path, "34/55", "1", "1.2", "--at", "K=0.9")
     assert (status, err) == (0, "") and "Potential : standard, K = 0.9\n" in out
     assert "J' = J - eps grad V(y), angles of period 2 pi\n" in out
-    assert "\nV(y) : 0.9 cos(y)\n" in out
+    assert "\nV(y) : 0.9 cos y\n" in out
     states = orbits.follow(orbits.standard, (34,), 55, [0.9, 1.08])
     for (action,), state in zip(numbers(out, "Action per point less |2 pi p/q|^2/2"), states):
         assert action == pytest.approx(4 * math.pi ** 2 * state.action, abs=1e-11)
@@ -179,7 +179,7 @@ def test_a_potential_in_a_file(run, root, tmp_path):
     status, out, err = run(root / "inputs" / "trig278.in", "5,7/9", "1", "--at", "a=0.1",
                            "--at", "b=1/7", "--at", "c=-0.2")
     assert (status, err) == (0, "") and (
-        "V(y) : -0.1 sin(y0) - 1/7 sin(y1) + 0.2 sin(y0 + y1)\n" in out)
+        "V(y) : -0.1 sin y0 - 1/7 sin y1 + 0.2 sin(y0 + y1)\n" in out)
 
 
 @pytest.mark.parametrize("text", ["1 0 0 -1/2\n0 1 0 -0.5\n", "2 0.25 -1\n"])
@@ -232,7 +232,7 @@ def test_help_and_version(run):
     (["trig", SMALL, "0.01", "--points", "DIR/a.json"], "ends in .npz"),
     (["trig", SMALL, "0.01", "--points", "DIR/other.npz"], "exists and is not"),
     (["trig", SMALL, "0.01", "--points", "DIR/no/x.npz"], "cannot be written"),
-    (["trig", SMALL, "0.01", "-g", "DIR/x.svg"], ".svg or .png or .pdf"),
+    (["trig", SMALL, "0.01", "-g", "DIR/x.ps"], ".svg or .png or .pdf"),
     (["trig", SMALL, "0.01", "-g", "DIR/other.svg"], "not a figure of this program"),
     (["trig", SMALL, "0:0.04:0.0001", "-g", "DIR/x.svg"], "states at most"),
     (["DIR/terms.json", "1/3", "0.01", "--points", "DIR/terms.json"], "overwrite"),

@@ -46,7 +46,7 @@ def test_a_proved_torus_is_drawn_as_the_name_says(tmp_path):
         torus_figure.draw(ONE, str(tmp_path / name))
         assert (tmp_path / name).read_bytes().startswith(start)
     with pytest.raises(ConverseError, match="ends in .svg"):
-        torus_figure.draw(ONE, str(tmp_path / "a.svg"))
+        torus_figure.draw(ONE, str(tmp_path / "a.ps"))
 
 
 def test_what_is_needed_and_what_was_reached_is_shown():
