@@ -151,8 +151,8 @@ class _Run:
     def __init__(self, before, backup, pool, progress):
         self.proof, self.backup = replace(before, hopeless=False), backup
         self.pool, self.threads = pool, pool.here and pool.jobs or count_workers()
-        self.progress, self.began = progress, time.monotonic()
-        self.seconds_before = before.seconds
+        self.progress = progress or (lambda share, counts: None)
+        self.began, self.seconds_before = time.monotonic(), before.seconds
         self.examined = self.share = 0.0    # before the tree that is grown now; of all, told last
         self.number, self.search = 0, None      # of that tree, and its search
         self.counts = before.counts             # when that began
@@ -177,9 +177,9 @@ class _Run:
             raise
         except BaseException:               # what is known is saved
             if self.search is not None or self.proof.tree:
-                self._finished(self._snapshot())
+                self._saved()
             raise
-        return self._finished(self._snapshot())
+        return self._saved()
 
     # ---- one tree
 
@@ -330,21 +330,15 @@ class _Run:
     def _is_late_told(self):
         """This is asked again and again while no tree grows."""
         self.pool.check()
-        self._show(self.share, self.proof.counts)
+        self.progress(self.share, self.proof.counts)
         return self._is_late()
-
-    def _show(self, share, counts):
-        if self.progress:
-            self.progress(share, counts)
 
     def _look(self):
         """Tells whoever wants to know how far things are.  Returns whether the work is to end."""
         self.view = self.search.view()
-        if self.progress:
-            left = len(self.proof.trees) - self.number
-            self.share = max(self.share, self.examined
-                             + (1 - self.examined) * self.view.examined / left)
-            self._show(self.share, self.counts_before + self.view.counts)
+        self.share = max(self.share, self.examined + (1 - self.examined) * self.view.examined / (
+            len(self.proof.trees) - self.number))
+        self.progress(self.share, self.counts_before + self.view.counts)
         self.backup.update(self._snapshot)
         return self._is_ended() or self._is_doubtful() or self._is_late()
 
@@ -365,5 +359,6 @@ class _Run:
         return replace(proof, seconds=self.seconds_before + time.monotonic() - self.began,
                        version=__version__, sha256="")
 
-    def _finished(self, proof):
+    def _saved(self):
+        proof = self._snapshot()
         return replace(proof, sha256=self.backup.finish(proof))

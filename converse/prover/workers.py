@@ -20,16 +20,14 @@ from ..storage.signals import Resource, postponed
 from ..version import __version__
 
 LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
+TASKS = 8                           # for an executor whose workers nobody counts
 ASK_SECONDS = 1.0                   # between two questions to a Dask scheduler
 # Evaluated by a worker of an executor, on which the package may be missing.
 ANSWER = "__import__('converse.prover.workers', fromlist='*').answer(release, task)"
 
 
-def count_workers(executor=None):
-    """How many tasks keep the cores of this machine, or an executor, busy."""
-    if executor is not None:
-        return 2 * (getattr(executor, "num_workers", None)
-                    or getattr(executor, "_max_workers", None) or 4)
+def count_workers():
+    """How many tasks keep the cores of this machine busy."""
     try:
         return len(os.sched_getaffinity(0))
     except AttributeError:              # not everywhere
@@ -144,7 +142,7 @@ class WorkerPool(Resource):
         """How many tasks to have under way, without the one that waits; 0, with a RuntimeWarning,
         while a cluster lacks workers.  WorkersGone: there will be none."""
         if self.client is None:
-            return self.jobs or count_workers(None if self.here else self.executor)
+            return self.jobs or (count_workers() if self.here else TASKS)
         if time.monotonic() >= self.due:
             self._ask()
             self.due = time.monotonic() + ASK_SECONDS

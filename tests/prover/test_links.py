@@ -484,7 +484,7 @@ def test_a_lost_scheduler_is_noticed_while_starting_points_are_looked_for(
         easily, monkeypatch, tmp_path):
     """What was found until then is saved."""
     class Executor(ThreadPoolExecutor):
-        status, num_workers = "running", 1
+        status = "running"
 
         def nthreads(self, callback_timeout):
             return {"worker": 1}
