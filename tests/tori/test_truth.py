@@ -26,12 +26,15 @@ CASES = {
              read_rotation("T49")),
     "phases": (Problem(SymplecticMap([(1, 0, F(1, 5)), (1, 1)], ["0.04", "0.03"])),
                read_rotation("spiral")),
+    "a sublattice": (Problem(SymplecticMap([(2, 0), (1, 3, F(1, 5))], ["0.01", "0.003"])),
+                     read_rotation("T49")),
+    "a direction": (Problem(SymplecticMap([(1, 1, F(1, 5))], ["0.05"])), read_rotation("T49")),
 }
 
 
 @pytest.fixture(scope="module", params=[
-    "golden", "line",
-    *(pytest.param(name, marks=pytest.mark.slow) for name in ("phase", "phases"))])
+    "golden", "line", *(pytest.param(name, marks=pytest.mark.slow) for name in (
+        "phase", "phases", "a sublattice", "a direction"))])
 def proved(request):
     return prove(*CASES[request.param])
 
@@ -85,6 +88,11 @@ def test_the_map_takes_the_torus_to_itself(proved):
             size = float(mpmath.norm(E))
             assert size <= proved.residual
             assert size <= (4 + stiffness(torus)) * proved.distance
+            angles = np.array(theta, float)             # and in doubles
+            assert torus.x(angles) == pytest.approx(np.array(
+                [t + u for t, u in zip(theta, here)], float), abs=1e-12)
+            assert torus.J(angles) == pytest.approx(np.array(
+                [x + u - v for x, u, v in zip(w, here, before)], float), abs=1e-12)
 
 
 def test_orbits_stay_as_near_as_the_proved_distance_allows(proved):
