@@ -256,13 +256,13 @@ def largest(d):
     return found
 
 
-def least(d):
-    """The least eigenvalue of a symmetric matrix, in double precision."""
+def least(d, root=math.sqrt, quotient=lambda x, y: x / y if x > 0 and y > 0 else 0):
+    """The least eigenvalue of a symmetric matrix, in double precision; of arrays with a root and a
+    quotient of arrays."""
     n = len(DIAGONAL[len(d)])
-    value = (trace(d) - math.sqrt(spread(d))) / n
+    value = (trace(d) - root(spread(d))) / n
     for _ in range(NEWTON_STEPS * (n > 2)):
-        det, slope, _ = newton(d, value)
-        value += det / slope if det > 0 and slope > 0 else 0
+        value = value + quotient(*newton(d, value)[:2])
     return value
 
 

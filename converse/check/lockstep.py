@@ -14,8 +14,8 @@ import random
 from dataclasses import replace
 from fractions import Fraction
 
-from .arith import (DIAGONAL, NEWTON_STEPS, ROWS, cofactors, dot, entries, fixed_of, newton,
-                    pairs_of, spread, trace, turn_of, with_determinant)
+from .arith import (DIAGONAL, ROWS, cofactors, dot, entries, fixed_of, least, newton, pairs_of,
+                    trace, turn_of, with_determinant)
 from .claim import ANGLE_AXES
 from .criterion import axes_of
 from .limits import FIRST_TRY_SITES, MAX_HALVINGS, MAX_PIECES, MAX_SITES, SITE_PENALTIES
@@ -249,12 +249,7 @@ def products(rows):
 
 
 def least_eigenvalue(d):
-    n = len(ROWS[len(d)])
-    found = (trace(d) - np.sqrt(spread(d))) / n
-    for _ in range(NEWTON_STEPS * (n > 2)):
-        det, slope, _ = newton(d, found)
-        found = found + np.where((det > 0) & (slope > 0), det / slope, 0)
-    return found
+    return least(d, np.sqrt, lambda x, y: np.where((x > 0) & (y > 0), x / y, 0))
 
 
 def least_eigenvector(d):

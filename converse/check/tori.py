@@ -16,8 +16,8 @@ from fractions import Fraction
 
 from .arith import GUARD, dot, fixed_of
 from .failures import NotConfirmed, Rejected, Unusable, named
-from .field import (E_LOW, Divisors, Field, Norm, combination, exponential_above,
-                    rounded_down, rounded_up, upper_root)
+from .field import (E_LOW, Divisors, Field, Norm, combination, exponential_above, rounded_down,
+                    rounded_up, upper_root)
 from .limits import MAX_BITS
 from .processes import ProcessDied, in_order
 from .series import FINE, Box, Ring, conjugate, greatest, opposite, powers_of, turn
