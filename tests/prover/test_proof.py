@@ -496,15 +496,10 @@ def test_every_problem_has_a_file(made_up, tmp_path, name):
 
 
 @pytest.mark.parametrize("line, new", [
-    ("frame", "frame: 1 1 1 1"), ("frame", "frame: 1 0 0"), ("frame", "frame: one"), ("frame", ""),
-    ("alone", "alone: 0"), ("alone", "alone: maybe"), ("alone", ""), ("odd about", ""),
-    ("wave", "wave: 1 0 0 0.3"), ("wave", "wave: 0 0 0 0.3 0 0 0"), ("wave", "wave: 1 0"),
-    ("wave", "wave: 0 1 0 0.3 0 0 0"), ("wave", "wave: 1.5 0 0 0.3 0 0 0"),
-    ("wave", "wave: 1 0 0 1/3 0 0 0"),
-    ("wave", "wave: 101 0 0 0.3 0 0 0"), ("wave", "wave: 1 0 x 0.3 0 0 0"), ("v0", "v0: 1 -1"),
-    ("v0", "v0: 1"), ("v0", ""), ("at once", "at once: perhaps"), ("at once", "at once: upper end"),
-    ("at once", "")])
+    ("frame", "frame: 1 1 1 1"), ("alone", ""), ("wave", "wave: 1 0 x 0.3 0 0 0"),
+    ("v0", "v0: 1 -1"), ("at once", "at once: perhaps")])
 def test_a_header_that_makes_no_sense(made_up, tmp_path, line, new):
+    """The checker reads it, and its refusals are lines of the prover, too."""
     path = tmp_path / "a.proof"
     made_up("0PP").save(path)
     lines = path.read_text().split("\n")
