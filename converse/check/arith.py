@@ -57,6 +57,11 @@ class Fixed:
             self.table.append((y >> GUARD, x >> GUARD))
             x, y = x * c - y * s >> fine, y * c + x * s >> fine
 
+    @property
+    def around_pi(self):
+        """Rational numbers below and above pi."""
+        return Fraction(self.pi - 2, self.one), Fraction(self.pi + 2, self.one)
+
     def angle(self, phase):
         """pi phase, modulo 2 pi, off by less than 2 units."""
         return math.floor(phase % 2 * self.two_pi / 2) >> GUARD

@@ -34,8 +34,7 @@ def reversal_centre(claim):
         moved[m] -= shift * Fraction(fixed.pi, one)
         error += 2 * abs(shift)
     error = error / one + sum(map(abs, moved))
-    ends = [x / Fraction(fixed.pi + off, one) for x in (middle - error, middle + error)
-            for off in (-2, 2)]
+    ends = [x / pi for x in (middle - error, middle + error) for pi in fixed.around_pi]
     return min(ends), max(ends)
 
 

@@ -51,7 +51,7 @@ def displacement(criterion, cell, start, end):
             shift[i] += dot(u, times(b, w)) / 2
             radius[i] += Fraction(upper_sqrt(math.ceil(square * fixed.one ** 2)), 2 * fixed.one)
     return [(min(ends), max(ends)) for ends in [
-        [x / Fraction(fixed.pi + off, fixed.one) for x in (s - d, s + d) for off in (-2, 2)]
+        [x / pi for x in (s - d, s + d) for pi in fixed.around_pi]
         for s, d in zip(shift, radius)]]
 
 

@@ -43,9 +43,7 @@ class Portrait:
     @property
     def length(self):
         """Bounds of the length, in radians, of the interval in which x* lies: below and above."""
-        fixed = fixed_of(CENTRE_BITS)
-        turns = 1 if self.even is not None else 2
-        return [turns * Fraction(fixed.pi + off, fixed.one) for off in (-2, 2)]
+        return [(1 if self.even is not None else 2) * pi for pi in fixed_of(CENTRE_BITS).around_pi]
 
     @property
     def undecided(self):
@@ -172,8 +170,7 @@ def check_places(portrait):
         raise NotConfirmed("there are more columns than the checker's limit, %d" % MAX_COLUMNS)
     low, high = stars[0] - portrait.strip, stars[-1] + portrait.strip
     if portrait.even is not None:
-        fixed = fixed_of(CENTRE_BITS)
-        ends = [portrait.even * Fraction(fixed.pi + off, fixed.one) for off in (-2, 2)]
+        ends = [portrait.even * pi for pi in fixed_of(CENTRE_BITS).around_pi]
         if low < max(ends) or high > min(ends) + portrait.length[0]:
             raise Rejected("an x* lies outside of the half turn whose mirror image is the other "
                            "half")
