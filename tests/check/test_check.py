@@ -524,6 +524,7 @@ def test_other_versions_and_line_ends(texts, run):
 
 @pytest.mark.parametrize("control", [
     "\x00", "\x0b", "\x1b[31m", "\x1c", "\x7f", "\x85", "\x9b", "\r"])
+@pytest.mark.quick
 def test_no_control_character_stands_in_a_header(texts, run, control):
     text = texts["trig278"].replace("\ntree:", "\ncomment: tabs\tare text, \u03b5 \u00e9\ntree:")
     assert run(sealed(text))[0] == 0

@@ -69,7 +69,8 @@ def looked_once():
     look, found = field.Divisors._look, {}
 
     def once(self, radius):
-        key = repr((vars(self.field), self.elements, vars(self.norm), self.tail, radius))
+        key = repr((vars(self.field), self.elements, vars(self.norm), self.tail, radius,
+                    field.TURN_BITS))
         if key not in found:
             look(self, radius)
             found[key] = self.records, self.radius
@@ -286,8 +287,8 @@ BAD_TEXT = [            # what makes another claim, or none; test_fuzz.py has wh
     ("piece 0 0", "piece 0 1"), ("piece 0 0 40 0", "piece 0 0 40 1"),
     (" 40 0 %d\n" % len(GOLDEN), " 40 0 %d\n" % (len(GOLDEN) - 1)),
     (" 40 0 %d\n" % len(GOLDEN), " 40 0 %d\n" % (len(GOLDEN) + 1)),
-    (FIRST, FIRST + "\n" + FIRST), (FIRST, "-" + FIRST), (FIRST, "0 0 0 0"),
-    (FIRST, "1 1 " + GOLDEN[0]), (FIRST, ""), (SECOND, "1 0 " + GOLDEN[1]),
+    (FIRST, FIRST + "\n" + FIRST), (FIRST, "0 0 0 0"), (FIRST, "1 1 " + GOLDEN[0]), (FIRST, ""),
+    (SECOND, "1 0 " + GOLDEN[1]), (FIRST, "-" + FIRST),
 ]
 # True or false, it is more than the checker undertakes.
 TOO_MUCH = [
