@@ -154,7 +154,7 @@ def test_nothing_proved(input_file, capsys):
     (("{one}", "--budget", "0"), "is not a time above 0"), (("{one}", "--budget", "-1"), "a time"),
     (("{one}", "--budget", "1d"), "is not a time above 0"), (("{point}",), "no parameter of the f"),
     (("none.json",), "cannot be read"), (("-r", "none.map"), "cannot be read"),
-    (("{one}", "-b", "no/a.map"), "cannot be written"), (("{one}", "-g", "a.svg"), ".svg or .png"),
+    (("{one}", "-b", "no/a.map"), "cannot be written"), (("{one}", "-g", "a.eps"), ".svg or .png"),
     (("{one}", "-b", "a.svg", "-g", "a.svg"), "would overwrite"),
     (("{one}", "-b", "a.map", "-r", "a.map"), "leave out -b"),
     (("-r", "{plane}", "{one}"), "of another family"),
