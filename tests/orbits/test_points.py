@@ -1,6 +1,5 @@
 """Files of points: all of a state is in them, to the last bit."""
 
-import os
 
 import numpy as np
 import pytest
@@ -62,20 +61,6 @@ def test_what_is_in_the_way_is_kept(tmp_path):
                         ("no/a.npz", "cannot be written")):
         with pytest.raises(ConverseError, match=words):
             state.save(tmp_path / name)
-
-
-def test_a_full_disk_leaves_the_older_file(tmp_path, monkeypatch):
-    state = orbits.follow(orbits.standard, (3,), 8, [0.9])[0]
-    path = tmp_path / "a.npz"
-    state.save(path)
-    data = path.read_bytes()
-
-    def full(handle):
-        raise OSError(28, "No space left on device")
-    monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(ConverseError, match="No space left on device.*older file"):
-        state.relax(1.2).save(path)
-    assert path.read_bytes() == data and os.listdir(tmp_path) == ["a.npz"]
 
 
 def test_the_command_writes_points(tmp_path, capsys):
