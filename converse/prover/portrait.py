@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
 from ..model.exact import decimal_text, pi_bounds, rounded, rounded_text, whole_number
 from ..model.map import SymplecticMap
@@ -38,8 +38,10 @@ SHARE_DIGITS = 6                        # decimals of the share that a file says
 WIDEST = 0.5                            # half the width of a strip times k; share() needs less
 MOST_COLUMNS = 1 << 16                  # a limit of the checker
 # Of the slopes of strips: samples in half a turn of successors; points of their orbits to either
-# side; the least sum of squares of an orbit that separates, whose slope does not matter.
-SAMPLES, STEPS, SEPARATED = 64, 12, 96.0
+# side; the least sum of squares of an orbit that separates, whose slope does not matter; the least
+# difference of slopes for which another piece begins, and how far it may move an end of a strip, in
+# units of the height of the smallest prisms.
+SAMPLES, STEPS, SEPARATED, TURNED, MOVED = 64, 12, 96.0, 0.1, 5.0
 BARREN = re.compile("[0-4]UU")          # a cut that separates nothing proved
 
 
@@ -362,37 +364,61 @@ def column(patch: Problem, strip: Fraction, depth: int, xstar: Fraction,
            stop: Callable[[], bool] = bool) -> Optional[Tuple[Tree, ...]]:
     """The trees of the regions of a column; None: stop() returned True.  A worker calls
     it."""
-    star = decimal_text(xstar), "0"
-    problem = region_of(patch, strip, star)
-    task = native.Task(problem, Settings(method="loewner", depth=depth, stubborn=True), star)
-    grown = native.grow(task, look=stop)
-    return None if grown is None else (Tree(problem, star, pruned(grown.text)),)
+    star, found = (decimal_text(xstar), "0"), []
+    for problem in regions_of(patch, strip, depth, star):
+        low, high = problem.v0
+        cuts = max(0, depth + round(math.log2(high - low)))     # half a turn has them all
+        task = native.Task(problem, Settings(method="loewner", depth=cuts, stubborn=True), star)
+        grown = native.grow(task, look=stop)
+        if grown is None:
+            return None
+        found.append(Tree(problem, star, pruned(grown.text)))
+    return tuple(found)
 
 
-def region_of(patch: Problem, strip: Fraction, star: Tuple[str, str]) -> Problem:
-    """The patch with a region that holds all successors of x* from c0 to c0 + 1: the others are
-    their images by the reversal of time.  In a strip it moves with the place in the strip."""
+def regions_of(patch: Problem, strip: Fraction, depth: int,
+               star: Tuple[str, str]) -> Iterable[Problem]:
+    """The patch with regions that hold, one after the other, all successors of x* from c0 to c0 +
+    1: the others are their images by the reversal of time.  In a strip each has its own shift, and
+    they overlap by the difference of their shifts, so that no gap is between them for any t2."""
+    def moved(shift):
+        return replace(patch, shifts=tuple((shift * (m == 1), Fraction(0))
+                                           for m in range(len(patch.parts))))
+
+    def outward(low, high):
+        return rounded(low - MARGIN, PLACES, up=False), rounded(high + MARGIN, PLACES, up=True)
+
     low, high = reversal_centre(patch, star)
-    shift = Fraction(round(slope(patch, strip, star, float(low + high) / 2) * strip / math.pi
-                           * 10 ** DIGITS), 10 ** DIGITS) if strip else Fraction(0)
-    moved = replace(patch, shifts=tuple((shift * (m == 1), Fraction(0))
-                                        for m in range(len(patch.parts))))
-    low, high = reversal_centre(moved, star)
-    return replace(moved, v0=(rounded(low - MARGIN, PLACES, up=False),
-                              rounded(high + 1 + MARGIN, PLACES, up=True)))
+    pieces = [(Fraction(0), Fraction(0))]           # where each begins, from 0 to 1, and its shift
+    if strip:
+        pieces = [(start, Fraction(round(slope * strip / math.pi * 10 ** DIGITS), 10 ** DIGITS))
+                  for start, slope in slopes(patch, strip, star, float(low + high) / 2, max(
+                      TURNED, MOVED * math.pi / 2 ** depth / float(strip)))]
+    for at, (start, shift) in enumerate(pieces):
+        problem = moved(shift)
+        low, high = reversal_centre(problem, star)
+        middle = (low + high) / 2
+        if at:
+            low = middle + start - abs(shift - pieces[at - 1][1]) / 2
+        if at + 1 < len(pieces):
+            following, other = pieces[at + 1]
+            high = middle + following - 1 + abs(shift - other) / 2
+        yield replace(problem, v0=outward(low, high + 1))
 
 
-def slope(patch: Problem, strip: Fraction, star: Tuple[str, str], centre: float) -> float:
-    """A slope d x_1/d x_0 - 1 for half a turn of successors.
+def slopes(patch: Problem, strip: Fraction, star: Tuple[str, str], centre: float,
+           turned: float) -> List[Tuple[Fraction, float]]:
+    """Divides half a turn of successors into pieces, each with its beginning, as a share of the
+    half turn, and its slope d x_1/d x_0 - 1.
 
-    Each sample of them has the slope of the line through its point that separates less than all
-    other lines, over STEPS points to either side; this is their midrange.  Circles have such
-    slopes, and strips along them need fewer cuts.  Doubles are enough, since any slope is right."""
+    The line of this slope through a point separates less than all other lines, over STEPS points to
+    either side.  Circles have such slopes, and strips along them need fewer cuts.  The slope of a
+    piece is the midrange of its samples, which differ by `turned` at most.  Doubles are enough,
+    since any slope is right."""
     k, _, phase = patch.waves[0]
     bend = float(patch.parts[1][1] / strip)         # p k
-    found = []
-    for n in range(SAMPLES):
-        x1 = math.pi * (centre + (n + 0.5) / SAMPLES)
+
+    def slope(x1):
         first, second = (float(star[0]), 1.0, 0.0), (x1, 1.0, 1.0)  # a point, d/d x_0 and d/d x_1
         across = along = product = 0.0
         for (x, a, b), (y, c, d) in (first, second), (second, first):   # forward and backward
@@ -402,9 +428,20 @@ def slope(patch: Problem, strip: Fraction, star: Tuple[str, str], centre: float)
                 beta = 2 - k * bend * math.sin(angle)
                 x, y = y, 2 * y - x + bend * math.cos(angle)
                 a, b, c, d = c, d, beta * c - a, beta * d - b
-        if along - product * product / across < SEPARATED:
-            found.append(-product / across)
-    return (min(found) + max(found)) / 2 if found else 0.0
+        return -product / across if along - product * product / across < SEPARATED else None
+
+    pieces: List[Tuple[Fraction, float]] = []
+    low = high = None
+    for n in range(SAMPLES):
+        found = slope(math.pi * (centre + (n + 0.5) / SAMPLES))
+        if found is None:
+            continue
+        if low is None or max(high, found) - min(low, found) > turned:
+            pieces.append((Fraction(n, SAMPLES), found))
+            low = high = found
+        low, high = min(low, found), max(high, found)
+        pieces[-1] = pieces[-1][0], (low + high) / 2
+    return [(Fraction(0), pieces[0][1]), *pieces[1:]] if pieces else [(Fraction(0), 0.0)]
 
 
 def pruned(text: str) -> str:

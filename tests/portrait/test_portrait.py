@@ -12,7 +12,6 @@ from files import sealed
 from converse import ConverseError, MuldoonMap, StandardMap, SymplecticMap, check, tori
 from converse.check.portrait import check_places, patch_of_strip, read_region, share
 from converse.model.problem import Problem
-from converse.model.region import reversal_centre
 from converse.prover import tree
 from converse.prover.portrait import Portrait, portray, pruned
 
@@ -247,25 +246,18 @@ def test_portrait_is_not_verified_if_no_leaf_is_looked_at(strips, monkeypatch):
         check.verify(strips[1])
 
 
-def test_regions_must_hold_the_successors_for_all_of_the_strip(strips, tmp_path):
-    """Each end of each region counts: one that is shorter by a little is refused.  Files of earlier
-    releases have several regions over a strip, which overlap by the difference of their shifts."""
-    portrait, apart = Portrait.load(strips[1]), Fraction("0.001")
-    x = portrait.stars[0]
-    first = portrait.found[x][0].problem
-    second = replace(first, shifts=tuple((s + apart * (m == 1), Fraction(0))
-                                         for m, (s, _) in enumerate(first.shifts)))
-    middle, high = sum(first.v0) / 2, reversal_centre(second, (str(x), "0"))[1] + 1
-    first = replace(first, v0=(first.v0[0], middle + apart / 2))
-    second = replace(second, v0=(middle - apart / 2, Fraction(math.ceil(high * 10 ** 9), 10 ** 9)))
-    portrait.found[x] = tuple(replace(portrait.found[x][0], problem=problem, text="U")
-                              for problem in (first, second))
-    path = tmp_path / "two"
-    portrait.save(path)
+def test_regions_must_hold_the_successors_for_all_of_the_strip(strips):
+    """Each end of each region counts: one that is shorter by a little is refused."""
+    portrait, path = strips
     lines = path.read_text().splitlines(keepends=True)
-    check.content(path.read_bytes())
-    for n in 1, 2, 3:
-        refusal = "part %d: .*not hold" % (3 if n == 3 else 1)
+    before = 0
+    for x in portrait.stars:
+        count = len(portrait.found[x])
+        if count > 2:
+            break
+        before += count
+    refusal = "part %d: .*not hold" % (1 + before)
+    for n in range(1 + before, 1 + before + count):
         at = lines.index("part: %d\n" % n) + 2
         _, centre, half, zero, shift, *rest = lines[at].split()
         centre, half, shift = map(Fraction, (centre, half, shift))
@@ -380,7 +372,6 @@ def test_no_words_say_less_undecided_than_there_is(strips, monkeypatch):
     assert "undecided: 9.61%" in title(strips[0])
 
 
-@pytest.mark.slow
 def test_what_was_only_read_is_told_in_the_headline(strips, tmp_path):
     """And a portrait of another release is neither continued nor relabelled."""
     found, path = strips
@@ -401,7 +392,6 @@ def test_what_was_only_read_is_told_in_the_headline(strips, tmp_path):
         portray(path=other, resume=True)
 
 
-@pytest.mark.slow
 def test_the_figure_has_the_coordinates_of_the_portraits_of_orbits(strips):
     """(y, J): the golden circle and its image pass where something is undecided, not so the
     points of the island about (pi/2, 0), nor the golden circle drawn at y' - y."""
