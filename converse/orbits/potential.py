@@ -195,11 +195,6 @@ class Fourier(Potential):
     factor: str
     period: float                       # type: ignore[misc]
 
-    def __post_init__(self):
-        if (self.kind, self.n) != (lib.CV_FOURIER, self.sum.dimension) or (
-                self.period != 1 and (self.period, self.factor) != (TURN, PER_PERIOD)):
-            raise ValueError("a Fourier sum is made by Fourier.of")
-
     @classmethod
     def of(cls, source: FourierSum, name: str = "fourier",
            start: Optional[Tuple[float, ...]] = None, factor: str = PER_PERIOD,
