@@ -83,7 +83,7 @@ def write(proof, path, caption=True):
 
 
 def encode(figure, kind, **options):
-    """A Figure as the bytes of a file of that kind, without a date.  PostScript is encapsulated."""
+    """A Figure as the bytes of a file of that kind, without a date."""
     data = io.BytesIO()
     figure.savefig(data, format=kind, bbox_inches="tight", metadata=METADATA[kind], **options)
     return data.getvalue()
