@@ -71,6 +71,7 @@ def check(code):
 
 
 TOO_LONG = lib.CV_REASON_TOO_LONG       # index of Counts.reasons
+PHASE_PLACES = 41                   # of phases in the core: see csrc/converse.h
 MANY = 2 ** 30                      # No search has as many leaves.
 SWAPPED = str.maketrans("01", "10")
 MAXIMA = "most_cuts", "max_steps", "max_NTsteps"    # of Counts: all other fields are sums
@@ -140,7 +141,7 @@ class Counts:
 
 
 # The most points of an orbit, except where longer orbits may prove more (orbit_length.py).  The
-# standard map needs 3,798 points for k = 0.972.
+# standard map needs 3,735 points for k = 0.972.
 ORDINARY = 4000
 
 
@@ -250,12 +251,13 @@ def native_problem(problem, owners, one=None):
         "angle": [text((low + high) / 2) for low, high in ends],
         "half": [text((high - low) / 2) for low, high in ends],
         "shift": [[text(shift[i]) for shift in problem.shifts] for i in angles],
-        "frame": [[one.c]] if one else rows(problem.frame), "odd": problem.odd is not None})
+        "frame": [[one.c]] if one else rows(problem.frame), "odd": problem.odd is not None,
+        "exact": all((10 ** PHASE_PLACES * term.phase).denominator == 1 for term in problem.terms)})
 
 
 def _nearly(phase):
-    """A rational number as a decimal, to less than 10^-40."""
-    scale = 10 ** 41
+    """A rational number as a decimal, to PHASE_PLACES."""
+    scale = 10 ** PHASE_PLACES
     return decimal_text(Fraction(phase.numerator * scale // phase.denominator, scale))
 
 

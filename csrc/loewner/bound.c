@@ -135,11 +135,13 @@ static void weigh(const batch *w, point *q)
     }
 }
 
-/* omega and m of all slots at a site. */
+/* omega and m of all slots at a site.  Half of omega at a mirror. */
 INLINE void weights_along(const batch *w, const point *q, vec omega[], vec m[])
 {
+    const double half = is_mirror(w, ORIGIN) && q == site_of(w, ORIGIN) ? 0.5 : 1.0;
+
     for (int i = 0; i < waves_of(w); i++) {
-        omega[i] = square(dot_k(w, i, q->n));
+        omega[i] = half * square(dot_k(w, i, q->n));
         m[i] = dot_k(w, i, q->mu);
     }
 }
@@ -209,15 +211,16 @@ INLINE void sum_left(const batch *w, sums *t, const point *q, int j, vec weights
     const uint64_t site = (uint64_t)j;
     const mask inside = TRUTH(w->since < site) & TRUTH(site < w->until);
 
+    if (is_mirror(w, j))
+        return; /* mu is odd about it, and what (2) leaves is 0 */
     for (int i = 0; i < N; i++) {
         const vec before = q[-1].mu[i], after = q[1].mu[i];
         const vec left = 4.0 * q->err_beta * weights + 0x1p-50 * (mag(before) + mag(after));
         if (j == ORIGIN || j == ORIGIN + 1) {
             const vec steep = steepness(w, q, i) - before - after;
             t->mass += mag(steep) * q->rad[i];
-            if (j == ORIGIN)
-                t->rest += mag(steep) * q->rad[i];
-            for (int k = 0; k < w->problem->columns && j > ORIGIN; k++)
+            t->rest += mag(steep) * q->nonlin_bound[i];
+            for (int k = 0; k < w->problem->columns; k++)
                 t->slope[k] += steep * q->lin[k][i];
             t->rounding += left * q->rad[i];
         } else {
@@ -227,18 +230,19 @@ INLINE void sum_left(const batch *w, sums *t, const point *q, int j, vec weights
     }
 }
 
-/* |n|^2 at both ends of the lanes that are active, which the tails begin with. */
+/* |n|^2 at the ends of the lanes that are active, which the tails begin with. */
 static vec ends_of(const batch *w, mask active)
 {
     vec squares = every(0.0);
 
     for (int k = 0; k < LANES; k++)
         if (holds(&active, k)) {
-            const point *const first = site_of(w, number(&w->from, k));
-            const point *const last = site_of(w, number(&w->to, k));
+            const int from = number(&w->from, k);
+            const point *const first = site_of(w, from), *const last =
+                                                             site_of(w, number(&w->to, k));
             double sum = 0.0;
             for (int i = 0; i < N; i++)
-                sum += at(&first->n[i], k) * at(&first->n[i], k) +
+                sum += (is_mirror(w, from) ? 0.0 : at(&first->n[i], k) * at(&first->n[i], k)) +
                        at(&last->n[i], k) * at(&last->n[i], k);
             put_at(&squares, k, sum);
         }

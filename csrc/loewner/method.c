@@ -120,6 +120,7 @@ const method method_loewner = {
     .accepts = loewner_accepts,
     .choose_start = loewner_choose_start,
     .start_places = 6,
+    .quarter_places = 20,
     .least_digits = 35,
     .prepare = loewner_prepare,
     .copy = loewner_copied,

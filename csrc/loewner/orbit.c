@@ -197,10 +197,13 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
 }
 
 /* Sets the two points that the prisms give.  Their roundings are in the widths: set_region.  0: out
-   of memory. */
+   of memory.
+
+   Mirrored, the past seen from x* is an orbit of the prism whose x_1 is off by 2 + S times what x*
+   is, and half of beta at x* belongs to half of (1): docs/proofs/argument.md, Lemma 8a. */
 static int begin(batch *w)
 {
-    vec star_err[N];
+    vec err = every(w->problem->xstar_err);
 
     if (!make_room(w, ORIGIN) || !make_room(w, ORIGIN + 1))
         return 0;
@@ -209,7 +212,6 @@ static int begin(batch *w)
     clear(w, origin + 1);
     for (int i = 0; i < N; i++) {
         const double *const frame = w->problem->frame[i];
-        star_err[i] = every(w->problem->xstar_err);
         origin->x[i] = w->problem->turns.xstar[i] - none();
         origin[1].x[i] = w->x1[i];
         for (int k = 0; k < N; k++)
@@ -218,14 +220,20 @@ static int begin(batch *w)
             for (int j = 0; j < N; j++)
                 origin[1].lin[k][i] += frame[j] * w->shift[j][k];
     }
-    for (int i = 0; i < N; i++)
-        origin->rem[i] = onto_axis(w, i, star_err) * WIDEN;
     origin[0].reached = origin[1].reached = ~none();
     measure(w, origin + 1);
     for (int j = 0; j < 2; j++) {
+        vec errs[N];
+        for (int i = 0; i < N; i++)
+            errs[i] = err;
+        for (int i = 0; i < N; i++)
+            origin[j].rem[i] = onto_axis(w, i, errs) * WIDEN;
         bound_displacement(w, origin + j);
         finish(w, origin + j);
+        err *= w->problem->mirrored ? 2.0 * origin->err_beta * (1.0 / grain_of(w)) : every(0.0);
     }
+    for (int i = 0; i < ENTRIES && w->problem->mirrored; i++)
+        origin->left[i] = origin->beta[i] *= 0.5;
     w->known_first = w->weighed_first = ORIGIN;
     w->known_last = ORIGIN + 1;
     w->weighed_last = ORIGIN - 1;
@@ -252,23 +260,32 @@ static int follow(batch *w, int to)
     return 1;
 }
 
+/* The points of lane k's orbit: mirrored, those of both sides. */
+static int points_of(const batch *w, int k)
+{
+    const int ahead = w->last[k] - ORIGIN;
+
+    return ahead + 1 + (w->problem->mirrored && ahead > 0 ? ahead : ORIGIN - w->first[k]);
+}
+
 /* Adds a point to the orbit of lane k at the end that is better known, or at the other end if the
-   orbit cannot go on there.  0: the end is known too badly, or the orbit is too long; why says
-   which. */
+   orbit cannot go on there; mirrored, one at either end.  0: the end is known too badly, or the
+   orbit is too long; why says which. */
 static int lengthen(batch *w, int k, int *why)
 {
+    const int mirrored = w->problem->mirrored;
     static const double END_RAD_MAX = 0.6;      /* A rad above 0.6 radians ends an orbit. */
 
     *why = CV_REASON_TOO_BIG;
     for (;;) {
         const int inner = w->last[k] <= ORIGIN;     /* two points are the prism's own */
-        const int ahead = inner || w->end_rad[k][1] < w->end_rad[k][0];
+        const int ahead = inner || mirrored || w->end_rad[k][1] < w->end_rad[k][0];
         int *const end = ahead ? &w->last[k] : &w->first[k]; /* hard to foretell: no branches */
         const int next = *end + 2 * ahead - 1;
 
         if (!inner && !(w->end_rad[k][ahead] <= END_RAD_MAX))
             return 0;
-        if (w->last[k] - w->first[k] + 1 == w->problem->longest || !follow(w, next)) {
+        if (points_of(w, k) + (mirrored && !inner) >= w->problem->longest || !follow(w, next)) {
             *why = CV_REASON_TOO_LONG;
             return 0;
         }

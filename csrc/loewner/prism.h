@@ -101,6 +101,10 @@ INLINE point *site_of(const batch *w, int site)
 
 static const double TINY = 0x1p-800;
 
+/* Is this the site of x*, and V even about it?  Then no sites before it are used, and half of (1)
+   is bounded, to which half of this site's own terms belongs: docs/proofs/argument.md, Lemma 8a. */
+INLINE int is_mirror(const batch *w, int site) { return w->problem->mirrored && site == ORIGIN; }
+
 /* Adds, for each column, what the wave's amplitude moves with its symbol, times a factor. */
 INLINE void add_moves(const batch *w, int wave, vec factor, vec to[])
 {

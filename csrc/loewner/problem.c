@@ -507,6 +507,22 @@ static void set_turns(loewner *w, const patch *problem, const apm_t scale)
     }
 }
 
+/* Is V even about turns.xstar?  A wave is if 2 (k.x* + phase) is half a turn but for whole ones,
+   exactly: turns are integers modulo 2^64. */
+static int is_mirrored(const loewner *w, const patch *problem)
+{
+    int even = 1;
+
+    for (int i = w->angles; i < w->waves; i++) {
+        const int quarters = problem->quarters[w->given[i]];
+        uint64_t turns = (uint64_t)quarters * QUARTER_TURN;
+        for (int j = 0; j < w->angles; j++)
+            turns += w->turns.k[i][j] * w->turns.xstar[j];
+        even = even && quarters >= 0 && 2 * turns == 2 * QUARTER_TURN;
+    }
+    return even;
+}
+
 /* Gives the problem room to try prisms in; NULL: no memory, and the problem is freed. */
 static loewner *with_room(loewner *w)
 {
@@ -534,6 +550,7 @@ loewner *loewner_new(const patch *problem, int longest)
     set_angles(w, problem, scale);
     set_wave_slots(w, problem);
     set_turns(w, problem, scale);
+    w->mirrored = is_mirrored(w, problem);
     apm_clear(scale);
     set_axes(w);
     for (int corner = 0; corner < 1 << w->n_parameters; corner++)

@@ -50,6 +50,7 @@ struct loewner {
     double err_pull;                    /* of what leave_exactly computes, over (1 + S) weights */
     int usable;                         /* do all these numbers fit, and is there a wave? */
     int identity;                       /* is the frame the identity? */
+    int mirrored;                       /* is V even about turns.xstar? */
     int longest;                        /* the most points of an orbit */
     int waves;                          /* slots in use; waves.h says what the first are */
     int given[SLOTS];                   /* of the patch's waves */

@@ -64,8 +64,6 @@ typedef struct {
     int ended, why; /* the orbit goes no further */
 } progress;
 
-static int points_of(const batch *w, int k) { return w->last[k] - w->first[k] + 1; }
-
 /* Tries to prove the prisms that are active with the orbits as far as they are followed. */
 static void attempt(batch *w, mask active, progress s[], outcome *const out[], mask *going)
 {
@@ -80,7 +78,8 @@ static void attempt(batch *w, mask active, progress s[], outcome *const out[], m
         if (holds(&contradict, k)) {
             const double bound = at(&w->bound, k), rounding = at(&w->rounding, k);
             verdict *const v = &out[k]->v;
-            v->nsteps = number(&w->to, k) - number(&w->from, k) + 1;
+            const int from = number(&w->from, k), to = number(&w->to, k);
+            v->nsteps = to - from + 1 + (is_mirror(w, from) ? to - from : 0);
             v->no_tori = bound < 0.0;
             v->reason = bound - 2.0 * rounding < 0.0 ? CV_REASON_ARITHMETIC : CV_REASON_TOO_BIG;
             if (!s[k].contradicted)
@@ -94,14 +93,17 @@ static void attempt(batch *w, mask active, progress s[], outcome *const out[], m
     }
 }
 
-/* How far a column of a point's L reaches along the waves of lane k, by their weights. */
+/* How far a column of a point's L, or its square in T, reaches along the waves of lane k, by their
+   weights: the ends of orbits whose x_1 moves with a parameter may know of it by T alone. */
 static double reach_of(const batch *w, const point *q, int column, int k)
 {
+    const int square = sym_at(w->problem->columns, column, column);
     double most = 0.0;
 
     FOR_WAVES(w, i) {
-        const vec along = dot_k(w, i, q->lin[column]);
-        most = fmax(most, at(&w->weight[i], k) * fabs(at(&along, k)));
+        const vec straight = mag(dot_k(w, i, q->lin[column]));
+        const vec bent = mag(dot_k(w, i, q->quad[square]));
+        most = fmax(most, at(&w->weight[i], k) * fmax(at(&straight, k), at(&bent, k)));
     }
     return most;
 }
@@ -178,7 +180,7 @@ static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
 static void follow_and_attempt(batch *w, mask going, int n, const cv_cell *const cells[],
                                progress s[], outcome *const out[])
 {
-    for (int points = 1, next = 1; any(going); points++) {
+    for (int points = 1, next = 1; any(going); points += 1 + w->problem->mirrored) {
         mask active = none();
         int growing = 0;
 
@@ -229,7 +231,7 @@ static int try_prisms(void *work, const loewner *problem, int n, const cv_cell *
     if (w->out_of_memory)
         return CV_ENOMEM;
     for (int k = 0; k < n; k++) {
-        out[k]->cut_off = s[k].why == CV_REASON_TOO_LONG && points_of(w, k) == problem->longest;
+        out[k]->cut_off = s[k].why == CV_REASON_TOO_LONG;
         put_truth(&blamed, k, holds(&going, k) && !out[k]->v.no_tori && s[k].contradicted);
     }
     if (any(blamed))

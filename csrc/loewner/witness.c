@@ -34,19 +34,21 @@ INLINE recursion recursion_of(const batch *w, int way, mask active, mask begin, 
 INLINE int advance(batch *w, recursion *r, int way)
 {
     const uint64_t site = (uint64_t)r->site;
-    point *const q = site_of(w, r->site);
-    vec *const blocks = way > 0 ? q->left : q->right, next[ENTRIES];
+    const vec end = is_mirror(w, r->site) ? every(0.0) : w->l;
+    vec next[ENTRIES];
     mask now, falls;
 
     if (!any(r->going) || r->site == r->last + way)
         return 0;
+    point *const q = site_of(w, r->site);
+    vec *const blocks = way > 0 ? q->left : q->right;
     now = r->going & (way > 0 ? TRUTH(r->begin <= site) : TRUTH(r->begin >= site));
     sym_subtract_inverse(N, next, q->beta, r->d);
     for (int k = 0; k < ENTRIES; k++) {
         r->d[k] = pick(now, next[k], r->d[k]);
         blocks[k] = pick(now, next[k], blocks[k]);
     }
-    falls = now & ~sym_is_above(N, r->d, pick(TRUTH(r->end == site), w->l, FALL_RATIO * w->l));
+    falls = now & ~sym_is_above(N, r->d, pick(TRUTH(r->end == site), end, FALL_RATIO * w->l));
     r->fall = choose(falls, site - none(), r->fall);
     r->fell |= falls;
     r->going &= ~falls & ~TRUTH(r->end == site);
@@ -79,16 +81,20 @@ static mask choose_ends(batch *w, mask active, mask *low, mask *high)
         put_number(&first, k, w->first[k]);
         put_number(&last, k, w->last[k]);
     }
-    recursion left = recursion_of(w, 1, active, first, last);
+    recursion left = recursion_of(w, 1, w->problem->mirrored ? none() : active, first, last);
     recursion right = recursion_of(w, -1, active, last, first);
     while (advance(w, &left, 1) | advance(w, &right, -1))       /* side by side: that is faster */
         continue;
+    if (w->problem->mirrored)
+        left = right;
     active = left.fell;
     *high = left.fall;
     *low = right.fall;
     const mask apart = active & (~right.fell | TRUTH(right.fall > left.fall));
-    const mask at_right = apart & right.fell &
-                          TRUTH(sym_least_eigenvalue(N, right.d) < sym_least_eigenvalue(N, left.d));
+    mask at_right = apart & right.fell &
+                    TRUTH(sym_least_eigenvalue(N, right.d) < sym_least_eigenvalue(N, left.d));
+    if (w->problem->mirrored)
+        at_right = active & TRUTH(*low > ORIGIN - none());
     const mask at_left = apart & ~at_right;
     if (any(at_left)) {
         last = choose(at_left, *high, last);

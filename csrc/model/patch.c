@@ -49,9 +49,11 @@ static void read_number(apm_t x, const char *text, int *status)
     apm_clear(most);
 }
 
-/* Converts a phase from units of pi to radians, without whole turns. */
-static void reduce(apm_t phase)
+/* Converts a phase from units of pi to radians, without whole turns.  Returns its quarter turns, or
+   -1. */
+static int reduce(apm_t phase)
 {
+    int quarters = 4;
     apm_t t;
 
     apm_init(t);
@@ -60,12 +62,16 @@ static void reduce(apm_t phase)
     apm_floor(t, t);
     apm_mul_si(t, t, -2);
     apm_add(phase, phase, t);
+    do
+        apm_set_si(t, 5 * --quarters, -1);
+    while (quarters >= 0 && apm_cmp(phase, t) != 0);
     apm_pi(t, PHASE_PLACES);
     apm_mul(phase, phase, t);
     apm_clear(t);
+    return quarters;
 }
 
-static void read_wave(patch *p, int i, const cv_wave *wave, int *status)
+static void read_wave(patch *p, int i, const cv_wave *wave, int exact, int *status)
 {
     int zero = 1;
 
@@ -81,8 +87,10 @@ static void read_wave(patch *p, int i, const cv_wave *wave, int *status)
     read_number(p->amplitude[i], wave->amplitude, status);
     for (int m = 0; m < p->n_parameters; m++)
         read_number(p->part[i][m], wave->part[m], status);
-    if (*status == CV_OK)
-        reduce(p->phase[i]);
+    if (*status == CV_OK) {
+        const int quarters = reduce(p->phase[i]);
+        p->quarters[i] = exact ? quarters : -1;
+    }
 }
 
 static int determinant(int f[ANGLES][ANGLES])
@@ -130,7 +138,7 @@ int patch_read(patch *p, const cv_problem *given)
     p->n_parameters = given->n_parameters;
     p->odd = given->odd;
     for (int i = 0; i < p->n_waves; i++)
-        read_wave(p, i, &given->waves[i], &status);
+        read_wave(p, i, &given->waves[i], given->exact, &status);
     read_region(p, given, &status);
     return status;
 }

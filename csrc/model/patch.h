@@ -8,9 +8,11 @@
 
 enum { MOST_WAVES = 16, PARAMETERS = 3, ANGLES = 3 };
 
-/* cv_problem as numbers; phases in radians, which may be off by 10^-39. */
+/* cv_problem as numbers; phases in radians, which may be off by 10^-39.  quarters: how many quarter
+   turns a phase is exactly, 0 to 3, or -1. */
 typedef struct {
     int n_angles, n_waves, n_parameters, k[MOST_WAVES][ANGLES], frame[ANGLES][ANGLES], odd;
+    int quarters[MOST_WAVES];
     apm_t phase[MOST_WAVES], amplitude[MOST_WAVES], part[MOST_WAVES][PARAMETERS];
     apm_t angle[ANGLES], half[ANGLES], shift[ANGLES][PARAMETERS], xstar[ANGLES];
 } patch;

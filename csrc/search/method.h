@@ -35,9 +35,10 @@ typedef struct {
     int (*accepts)(const patch *p, const precision *how);
 
     /* A starting point from which the proof is short, and the decimal places to which it is
-       rounded.  On the diagonal, if it may be, where V is symmetric about it. */
+       rounded; quarter_places: those of a multiple of pi/2, if it is one to the others; 0: no more.
+       On the diagonal, if it may be, where V is symmetric about it. */
     void (*choose_start)(const patch *p, int symmetric, double x[ANGLES]);
-    int start_places;
+    int start_places, quarter_places;
 
     int least_digits;       /* the region is converted with at least this number of places */
 

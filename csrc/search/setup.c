@@ -1,4 +1,5 @@
 /* setup.c - a search is made: the problem is read, and what every step needs is set up. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "arith/guard.h"
@@ -30,24 +31,39 @@ void cv_search_free(cv_search *s)
     free(s);
 }
 
-/* The starting point of the method's choice, rounded to its decimal places. */
+/* The starting point of the method's choice, rounded to its decimal places; where that is a
+   multiple of pi/2, to more of them, as V may be even about it. */
 static int choose_xstar(const cv_search *s, apm_t xstar[ANGLES])
 {
-    const long places = s->method->start_places;
+    const long places = s->method->start_places, fine = s->method->quarter_places;
     int status = CV_OK;
     double start[ANGLES] = { 0.0 };
-    apm_t half;
+    apm_t half, pi, near, off;
 
     s->method->choose_start(&s->problem, s->symmetric, start);
     apm_init(half);
+    apm_init(pi);
+    apm_init(near);
+    apm_init(off);
     apm_set_si(half, 5, -places - 1);
+    apm_pi(pi, fine + 2);
     for (int j = 0; j < s->problem.n_angles; j++) {
         if (apm_set_d(xstar[j], start[j]) != APM_OK)
             status = CV_ENUMBER;
         apm_add(xstar[j], xstar[j], half);
         apm_round(xstar[j], xstar[j], places, APM_DOWN);
+        apm_mul_si(near, pi, 5 * (long)floor(start[j] / 1.5707963 + 0.5));
+        apm_scale(near, near, -1);
+        apm_round(near, near, fine, APM_DOWN);
+        apm_sub(off, xstar[j], near);
+        apm_scale(off, off, places);
+        if (fine > 0 && fabs(apm_get_d(off)) < 1.0)
+            apm_set(xstar[j], near);
     }
     apm_clear(half);
+    apm_clear(pi);
+    apm_clear(near);
+    apm_clear(off);
     return status;
 }
 

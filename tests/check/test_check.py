@@ -2244,7 +2244,7 @@ def test_processes_share_the_memory_of_two(np, root, tmp_path, monkeypatch):
 
 @pytest.mark.skipif(TORTURE <= 1, reason="minutes; make torture has it")
 def test_the_standard_map_nearest_to_break_up(np, root, tmp_path):
-    """Orbits of 18,605 points: whole, and in doubles alone, where the integers would take days."""
+    """Orbits of 18,621 points: whole, and in doubles alone, where the integers would take days."""
     proof = prove(read_input(root / "inputs" / "standard-9717.in"), method="loewner")
     proof.save(tmp_path / "a")
     with pytest.MonkeyPatch.context() as patch:

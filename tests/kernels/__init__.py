@@ -189,6 +189,11 @@ def lanes(search: Any) -> int:
     return lib.search_lanes(ffi.cast("void *", int(native.ffi.cast("intptr_t", search))))
 
 
+def is_mirrored(search: Any) -> bool:
+    """Does a search of the product's follow orbits from x* to one side only?  It is set up."""
+    return bool(lib.search_mirrored(ffi.cast("void *", int(native.ffi.cast("intptr_t", search)))))
+
+
 def half_width(search: Any, axis: int) -> Fraction:
     """Half of the width of v0 or v1, in radians, once it is set up."""
     text = lib.search_half(ffi.cast("void *", int(native.ffi.cast("intptr_t", search))), axis)

@@ -30,6 +30,7 @@ CDEF = """
 int kernel(const char *name, int as_double, int as_printed, int dp,
            int nin, const char *const in[], int nout, char *out[]);
 int search_lanes(const void *search);
+int search_mirrored(const void *search);
 char *search_half(const void *search, int axis);
 void cv_free(char *text);
 """

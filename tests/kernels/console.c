@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "loewner/problem.h"
 #include "search/search.h"
 #include "thesis/unit.h"
 
@@ -67,6 +68,12 @@ int search_lanes(const void *search)
     const cv_search *const s = search;
 
     return s->method->lanes(s->work);
+}
+
+/* Of one of the sharper method. */
+int search_mirrored(const void *search)
+{
+    return ((const loewner *)((const cv_search *)search)->work)->mirrored;
 }
 
 /* Half of the width of v0 or v1 in radians, as a decimal that the caller frees. */
