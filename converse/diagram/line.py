@@ -19,9 +19,9 @@ FINEST = 1 << 14                        # A cell with a torus is left out if so 
 ROUND, LEAST = 8, Fraction(1, 16)       # cells of a round, none of which is much less urgent
 FIRST_POINTS = {1: 1 << 15, 2: 1 << 18}     # of the first try at a cell, by the number of angles
 DOUBT = Fraction(1, 2)                  # of its weight, where the middle of a cell is not excluded
-# A cell with a torus that is seen is so much less urgent; a neighbour of excluded values is so much
-# more urgent, by the number of angles.
-SEEN, EDGE = 16, {1: 32, 2: 256}
+# A cell that meets a run of values with tori is so much less urgent; a neighbour of excluded values
+# is so much more urgent, by the number of angles.
+TORUS, EDGE = 64, {1: 32, 2: 256}
 Hint = Tuple[Fraction, Tuple[none.Point, ...]]  # a value, and the x* over which it is excluded
 NEAREST = 8                             # x* of neighbours that are suggested for a cell
 
@@ -160,15 +160,16 @@ class _Line:
 
     def _cells(self):
         """The cells that are tried next, the widest first, from the top down; one that touches a
-        part without tori counts as if it were wider, one with a torus that is seen as narrower.
-        First those with a proved torus are halved, until their parts have none."""
+        part without tori counts as if it were wider, one that meets a run as narrower.  First those
+        with a proved torus are halved, until their parts have none."""
         ends = {end for each in self.diagram.none for end in each}
         edge = EDGE[self.diagram.family.dimension]
+        runs = self.tori.hulls()
 
         def rank(cell):
             urgency = cell.weight * (edge if cell.low in ends or cell.high in ends else 1)
-            seen = self.tori.seen_in(cell.low, cell.high)
-            return (cell.low - cell.high) * urgency / (SEEN if seen else 1), -cell.low
+            torus = any(low <= cell.high and cell.low <= high for low, high in runs)
+            return (cell.low - cell.high) * urgency / (TORUS if torus else 1), -cell.low
 
         tori = [(each.low, each.high) for each in self.diagram.tori]
         todo, free = list(self.cells), []       # type: List[Cell], List[Cell]

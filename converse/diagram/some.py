@@ -25,10 +25,12 @@ from ..tori.torus import family as potential_of
 from .value import POINTS_A_SECOND, Diagram, Seen
 
 # By the number of angles.  First GRID parts of the range are looked at; then gaps between values,
-# down to 1/PARTS of what is open, and where a torus is seen at one end only down to 1/FINEST.
+# down to 1/PARTS of what is open, between tori SPARSE times less, and where a torus is seen at one
+# end only down to 1/FINEST.
 GRID, PARTS, FINEST = {1: 16, 2: 8}, {1: 1 << 8, 2: 1 << 5}, {1: 1 << 15, 2: 1 << 9}
-SEEN = 1e-9                             # turns: an orbit that changes less is taken for a torus
-EFFORTS = {1: (4, 16, 64), 2: (128, 512)}       # seconds that a try may take, about
+SPARSE = 8
+SEEN = 1e-8                             # turns: an orbit that changes less is taken for a torus
+EFFORTS = {1: (5, 20, 80), 2: (128, 512)}       # seconds that a try may take, about
 LEAST = {1: 2, 2: 20}                   # No try begins with less.
 POINT = 1e-4                            # seconds of a proof for each point of its mesh, at least
 BORDERS, LOOKS, PROOFS = 2, 2, 1        # of a round
@@ -146,21 +148,19 @@ class Runs:
         self.diagram.seen = [Seen((value,), seen) for value, seen in sorted(self.looks.items())
                              if seen and value not in proved]
 
-    def seen_in(self, low: Fraction, high: Fraction) -> bool:
-        """Is a torus seen in this part of the line?"""
-        return any(seen and low <= value <= high for value, seen in self.looks.items())
-
     def _looks(self):
-        """The middles of the widest gaps between known values, where a torus is seen at one end,
-        and elsewhere."""
+        """The middles of the widest gaps between known values: where a torus is seen at one end,
+        and elsewhere, where gaps between tori that are seen are of less use."""
         ends, open_parts = self._values(), self.diagram.open
-        part = (open_parts[-1][1] - open_parts[0][0]) / PARTS[self.n] if open_parts else 0
+        if not open_parts:
+            return []
+        part = (open_parts[-1][1] - open_parts[0][0]) / PARTS[self.n]
         gaps: Tuple[List[Any], List[Any]] = ([], [])
         for a, b in zip(ends, ends[1:]):
-            border = bool(self.looks.get(a)) != bool(self.looks.get(b))
-            middle = nice((a + b) / 2, self.grain)
-            if b - a > (self.grain if border else part) and not self._is_known(middle):
-                gaps[border].append((a - b, middle))
+            seen = sum(bool(self.looks.get(end)) for end in (a, b))
+            least, middle = (part, self.grain, SPARSE * part)[seen], nice((a + b) / 2, self.grain)
+            if b - a > least and not self._is_known(middle):
+                gaps[seen == 1].append(((a - b) / least, middle))
         return [Task(middle) for each, most in zip(gaps, (LOOKS, BORDERS))
                 for _, middle in sorted(each)[:most]]
 
@@ -178,9 +178,8 @@ class Runs:
     def _proofs(self, seconds=math.inf):
         """The tries that are next: where the part of a run that is not proved is widest for the
         effort."""
-        tries = [each for run in self.runs() for each in self._of_run(run)]
-        return [task._replace(effort=min(task.effort, seconds)) for _, task in sorted(
-            tries) if seconds >= LEAST[self.n]][:PROOFS]
+        tries = sorted(each for run in self.runs() for each in self._of_run(run, seconds))
+        return [task for _, task in tries[:PROOFS]]
 
     def _proved(self):
         return [value for each in self.diagram.tori for value in {each.low, each.high}]
@@ -197,37 +196,43 @@ class Runs:
                 found.append([])
         return [run for run in found if run]
 
-    def _of_run(self, run):
-        """The next tries in a run: first between its middle and its upper end, then between proved
-        values and both ends."""
-        middle, proved = len(run) // 2, [x for x in self._proved() if run[0] <= x <= run[-1]]
+    def hulls(self) -> List[Ends]:
+        """The ranges of the runs.  The lowest includes an end of the range where V is 0."""
+        least = min(self._values(), default=self.high)
+        return [(self.low if run[0] <= least else run[0], run[-1]) for run in self.runs()]
+
+    def _of_run(self, run, seconds):
+        """The next tries in a run: first at its upper end, then beyond proved values, to both ends
+        and half of the way to what is known beyond these."""
+        proved, known = [x for x in self._proved() if run[0] <= x <= run[-1]], self._values()
         if not proved:
-            return self._next(run[0], run[middle:], False) or self._next(
-                run[-1], run[:middle][::-1], False)
-        low, high = min(proved), max(proved)
-        found = self._next(high, [x for x in run if x > high])
-        if run[0] > self._values()[0]:
-            found += self._next(low, [x for x in reversed(run) if x < low])
+            return self._next(run[0], run[-1], self.high - self.low, seconds)
+        found = []
+        for start, end, beyond in (
+                (max(proved), run[-1], [x for x in known if x > run[-1]][:1]),
+                (min(proved), run[0], [x for x in known if x < run[0]][-1:])):
+            if beyond and abs(end - start) <= self.grain:
+                end = nice((start + beyond[0]) / 2, self.grain)
+            if beyond or end > start:       # Nothing is asked at the lower end of the range.
+                found += self._next(start, end, abs(end - start), seconds)
         return found
 
-    def _next(self, start, values, proved=True):
-        """(less the width of the part for each second, Task) of a try at one of the values, which
-        are ever less likely to succeed: in the middle of those before the first at which a try with
-        this effort failed.  Then between the start, where a torus is proved, and the first value.
-        """
-        if proved:
-            values = [value for value in values if abs(value - start) > self.grain]
-        if not values:
-            return []
-        width = float(abs(values[-1] - start) if proved else self.high - self.low)
-        for effort in EFFORTS[self.n]:
-            left = list(itertools.takewhile(
-                lambda value: self.tried.get(value, 0) < effort, values))
-            if left:
-                return [(-width / effort, Task(left[len(left) // 2], effort, start))]
-        if not proved or abs(values[0] - start) <= 2 * self.grain:
-            return []
-        return [(-width / effort, Task(nice((start + values[0]) / 2, self.grain), effort, start))]
+    def _next(self, start, end, width, seconds):
+        """(less the width of the part for each second, Task) of a try at an end, with more effort
+        than those on the way from the start, where a torus is seen or proved.  The try itself goes
+        back towards the start.  Then the way is halved."""
+        while abs(end - start) > self.grain or start not in self._proved():
+            low, high = sorted((start, end))
+            done = max((effort for value, effort in self.tried.items()
+                        if low <= value <= high and value != start or value == end), default=0)
+            for most in EFFORTS[self.n]:
+                effort = min(most, seconds)
+                if effort > done and effort >= max(LEAST[self.n], self.tried.get(start, 0)):
+                    return [(-float(width) / most, Task(end, effort, start))]
+            if abs(end - start) <= self.grain:
+                break
+            end = nice((start + end) / 2, self.grain)
+        return []
 
 
 def nice(value: Fraction, grain: Fraction) -> Fraction:

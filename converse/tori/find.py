@@ -36,7 +36,7 @@ LARGEST = 1 << 23           # Points of the mesh times the degree are at most ab
 NARROWEST = 1e-5            # A piece of s is at least about this long.
 ALL = 0.93                  # A piece that could cover this part of the rest takes all of it.
 # The s that farthest() tries.
-RETREAT = Fraction(1), Fraction(7, 8), Fraction(3, 4), Fraction(1, 2), Fraction(0)
+RETREAT = Fraction(1), Fraction(7, 8), Fraction(3, 4), Fraction(1, 2), Fraction(0), Fraction(-1, 2)
 MOST_MARGIN = 1e100         # Coefficients times 2^bits are doubles on their way to integers.
 
 
@@ -209,7 +209,7 @@ class Search:
     def farthest(self, sign: int) -> Torus:
         """A torus, as near to s = sign as the effort of `tell` permits to refine and verify it: of
         the most regular orbits there, or of orbits of the same rotation vectors."""
-        listed, failure = self._regular(self._orbits(sign), sign)[1], None
+        listed, failure = self._regular(self._orbits(sign), sign)[1][:SMOOTHEST], None
         for s in RETREAT if self.part else (1,):
             orbits = self._orbits(s * sign)
             if s < 1:
@@ -314,9 +314,10 @@ def _single(found, way, margin):
         # Modes below the noise stay: they belong to the errors of the others, and cancel in E.
         numbers = numbers_of(modes.picked(found.mesh.moved(found.u, mesh))[None], bits) \
             if torus is None else taken(modes, bits, torus)
+        needed = int((aim.length(modes.k) <= aim.size).sum())   # The others are pruned, most of them.
         way.tell("refining a torus of %d modes" % len(modes.at),
                  SINGLE * balls(mesh.points, bits + SPARE_BITS),
-                 VERIFYING[way.potential.dimension] * len(modes.at))
+                 VERIFYING[way.potential.dimension] * needed)
         torus, ratio = refined(
             Torus(way.potential, None, way.rotation, bits, modes.k.T, numbers, aim.strip), modes,
             aim, margin, turn == ROUNDS)

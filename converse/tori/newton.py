@@ -79,11 +79,12 @@ def wave_vectors(potential: FourierSum) -> Tuple[Tuple[int, ...], ...]:
 
 def sizes_holding(potential: FourierSum, frame: Frame, box: Iterable[float]) -> List[int]:
     """The sizes of the smallest mesh whose mode numbers reach box[i] in each direction: powers of
-    two, or three quarters of one.  Transforms take a quarter more time for each point of these."""
+    two, or five or six eighths of one.  Transforms take a quarter more time for each point of
+    these."""
     steps = pivots(triangular(wave_vectors(potential), frame), frame)
     least = [max(2 * reach / step, 8) for reach, step in zip(box, steps)]
     powers = [1 << ceil(log2(each)) for each in least]
-    return [power * 3 // 4 if power * 3 // 4 >= each else power
+    return [next(power * part // 8 for part in (5, 6, 8) if power * part >= 8 * each)
             for power, each in zip(powers, least)]
 
 

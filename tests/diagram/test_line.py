@@ -94,14 +94,21 @@ def test_values_that_are_seen_next_to_each_other_are_a_run():
     assert runs.runs() == [[0, F("0.1")], [F("0.3")]]
 
 
-def test_the_first_torus_of_a_run_is_looked_for_above_its_middle():
+def test_the_first_torus_of_a_run_is_looked_for_at_its_upper_end():
     runs = runs_of({"0": None, "0.1": None, "0.2": .2, "0.3": .2, "0.4": .2, "0.5": None})
-    least, *_, most = some.EFFORTS[1]
-    assert runs._proofs() == [some.Task(F("0.4"), least, F("0.2"))]
-    runs.tried[F("0.4")] = least
-    assert runs._proofs() == [some.Task(F("0.3"), least, F("0.2"))]
-    runs.tried.update({F("0.3"): most, F("0.4"): most})
-    assert runs._proofs() == [some.Task(F("0.2"), least, F("0.4"))]
+    for effort in some.EFFORTS[1]:
+        assert runs._proofs() == [some.Task(F("0.4"), effort, F("0.2"))]
+        runs.tried[F("0.4")] = effort
+    assert runs._proofs() == [some.Task(F("0.3"), some.EFFORTS[1][0], F("0.2"))]
+
+
+def test_beyond_a_torus_at_the_end_of_a_run_it_is_tried_half_of_the_way(monkeypatch):
+    """An orbit may be taken for chaotic where there is a torus."""
+    runs = runs_of({"0": .2, "0.4": .2, "0.5": None})
+    monkeypatch.setattr(runs, "_proved", lambda: [F("0.4")])
+    assert runs._proofs() == [some.Task(F("0.45"), some.EFFORTS[1][0], F("0.4"))]
+    monkeypatch.setattr(Diagram, "none", [(F("0.44"), F(1))])
+    assert runs._proofs() == [some.Task(F("0.42"), some.EFFORTS[1][0], F("0.4"))]
 
 
 @pytest.mark.parametrize("last", [F("0.8"), F("0.55"), F("0.41")])
@@ -110,13 +117,12 @@ def test_a_run_is_proved_up_to_the_last_value_that_can_be(monkeypatch, last):
     proved = [F(0)]
     monkeypatch.setattr(some.Runs, "_proved", lambda self: proved)
     runs = runs_of({"0": .2, "0.2": .2, "0.4": .2, "0.8": .2, "0.81": .2, "0.9": None})
-    for _ in range(60):
+    for _ in range(100):
         for value, effort, back in runs._proofs():
             assert back == max(proved)
+            runs.tried[value] = effort
             if value <= last * effort / some.EFFORTS[1][-1]:
                 proved.append(value)
-            else:
-                runs.tried[value] = effort
     assert 0 <= last - max(proved) <= 3 * runs.grain and not runs._proofs()
 
 
@@ -142,9 +148,30 @@ def test_gaps_are_looked_at_down_to_a_share_of_what_is_open(monkeypatch):
     assert all(task.value < F("0.2") for task in runs._looks())
 
 
+def test_between_values_with_tori_looks_are_sparse():
+    runs = runs_of({"0": .2, "0.5": .3, "0.52": None, "0.56": None, "1": .2})
+    assert {task.value for task in runs._looks()} == {F("0.25"), F("0.78"), F("0.51"), F("0.54")}
+    runs.looks.update({F(i, 60): (.2,) for i in range(61)})
+    assert not [task for task in runs._looks() if task.value < F("0.5")]
+
+
+def test_a_try_has_more_effort_than_those_on_the_way(monkeypatch):
+    runs = runs_of({"0": .2, "0.4": .2, "0.5": .2, "0.6": None})
+    monkeypatch.setattr(runs, "_proved", lambda: [F("0.3")])
+    runs.tried.update({F("0.3"): 5, F("0.4"): 20})
+    assert runs._proofs() == [some.Task(F("0.5"), 80, F("0.3"))]
+    runs.tried.update({F("0.5"): 80})
+    assert runs._proofs() == [some.Task(F("0.4"), 80, F("0.3"))]
+    runs.tried.update({F("0.4"): 80})
+    assert runs._proofs() == [some.Task(F("0.35"), 5, F("0.3"))]
+
+
 def test_no_try_takes_more_than_is_left():
     runs = runs_of({"0": .2, "0.1": .2, "0.2": None})
     assert runs._proofs(some.LEAST[1])[0].effort == some.LEAST[1] and not runs._proofs(1.9)
+    runs.tried[F("0.1")] = 5
+    assert runs._proofs(6) == [some.Task(F("0.1"), 6, F(0))]
+    assert runs._proofs(4) == [some.Task(F("0.05"), 4, F(0))]
 
 
 def test_nothing_is_looked_for_where_v_is_0():
@@ -168,13 +195,13 @@ def test_a_try_at_a_torus_ends_at_the_step_after_it_is_told_to():
 
 
 def test_a_try_takes_no_more_than_its_effort():
-    """The golden circle at 0.9714 is too dear; the proof comes from a smaller value."""
-    family = FourierMap({1: {"K": 1}}, K=("0.95", "0.9714"))
-    found = some.attempt(family, some.Task(F("0.9714"), 8, F("0.95")))
-    assert found.points <= 8 * POINTS_A_SECOND
+    """The circle at 0.96 is too dear; the proof comes from a smaller value."""
+    family = FourierMap({1: {"K": 1}}, K=("0.5", "0.96"))
+    found = some.attempt(family, some.Task(F("0.96"), F("2.3"), F("0.5")))
+    assert found.points <= F("2.3") * POINTS_A_SECOND
     (wave, value), = zip(*found.torus.torus.potential[:2])
-    assert F("0.95") < value < F("0.9714")
-    assert some.attempt(family, some.Task(F("0.9714"), 1, F("0.95"))).torus is None
+    assert F("0.5") < value < F("0.96")
+    assert some.attempt(family, some.Task(F("0.96"), F("0.5"), F("0.5"))).torus is None
 
 
 def test_values_have_few_decimals():
@@ -207,6 +234,15 @@ def test_a_cell_next_to_excluded_values_comes_first(monkeypatch):
         ("0.3", "0.4"), ("0.4", "0.5"), ("0.5", "0.501"), ("0.501", "0.502"))]
     monkeypatch.setattr(Diagram, "none", [(F("0.502"), F("0.6"))])
     assert [cell.low for cell in work._cells()] == [F("0.4"), F("0.3"), F("0.501")]
+
+
+def test_a_cell_between_values_with_tori_comes_later():
+    """Even below the first value with a torus, from where V is 0 on."""
+    work = line._Line(Diagram.of(FourierMap({1: {"k": 1}}, k=(0, 2))))
+    work.cells = [line.Cell(F(low), F(high), 1, F(1)) for low, high in (
+        ("0", "0.1"), ("0.3", "0.4"), ("1.31", "1.32"))]
+    work.tori.looks.update({F("0.125"): (.2,), F("1.25"): (.2,), F("1.3"): None})
+    assert [cell.low for cell in work._cells()] == [F("1.31"), F("0.3"), F(0)]
 
 
 def test_a_cell_with_a_torus_is_halved_and_not_tried(monkeypatch):
