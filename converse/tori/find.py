@@ -314,10 +314,9 @@ def _single(found, way, margin):
         # Modes below the noise stay: they belong to the errors of the others, and cancel in E.
         numbers = numbers_of(modes.picked(found.mesh.moved(found.u, mesh))[None], bits) \
             if torus is None else taken(modes, bits, torus)
-        needed = int((aim.length(modes.k) <= aim.size).sum())   # The others are pruned, most of them.
         way.tell("refining a torus of %d modes" % len(modes.at),
                  SINGLE * balls(mesh.points, bits + SPARE_BITS),
-                 VERIFYING[way.potential.dimension] * needed)
+                 VERIFYING[way.potential.dimension] * len(modes.at))
         torus, ratio = refined(
             Torus(way.potential, None, way.rotation, bits, modes.k.T, numbers, aim.strip), modes,
             aim, margin, turn == ROUNDS)
