@@ -29,7 +29,7 @@ from .value import POINTS_A_SECOND, Diagram, Seen
 # end only down to 1/FINEST.
 GRID, PARTS, FINEST = {1: 16, 2: 8}, {1: 1 << 8, 2: 1 << 5}, {1: 1 << 15, 2: 1 << 9}
 SPARSE = 8
-SEEN = 1e-8                             # turns: an orbit that changes less is taken for a torus
+SEEN = 3e-8                             # turns: an orbit that changes less is taken for a torus
 EFFORTS = {1: (5, 20, 80), 2: (128, 512)}       # seconds that a try may take, about
 LEAST = {1: 2, 2: 20}                   # No try begins with less.
 POINT = 1e-4                            # seconds of a proof for each point of its mesh, at least
