@@ -196,10 +196,10 @@ def test_vectors(ahead, back, tail):
     any vectors give a bound.
 
     At each site the recursions from both ends of the orbit are compared, the one from the lane's
-    own end only where it has not failed.  Of each part of the orbit that they cover without
-    beginning anew, where both together have a negative eigenvalue that is nearest to zero, and n
-    as a rule is largest, is its eigenvector; n follows outwards by the recursions.  The part is
-    taken where this eigenvalue is lowest: others may contradict next to nothing.
+    own end, except at x*, only where it has not failed.  Of each part of the orbit that they cover
+    without beginning anew, where both together have a negative eigenvalue that is nearest to zero,
+    and n as a rule is largest, is its eigenvector; n follows outwards by the recursions.  The part
+    is taken where this eigenvalue is lowest: others may contradict next to nothing.
     """
     blocks = [*reversed(back), *ahead]
     left = recursion(blocks, len(back), tail)
@@ -208,7 +208,7 @@ def test_vectors(ahead, back, tail):
     for k, (block, (d, _, begin), (beyond, _, end)) in enumerate(zip(blocks, left, right)):
         form = [x + y - z for x, y, z in zip(d, beyond, block)]
         low = least(form)
-        if low < 0 and not (begin if k < len(back) else end):
+        if low < 0 and (k == len(back) - 1 or not (begin if k < len(back) else end)):
             found[begin, end] = max(found.get((begin, end), (-math.inf,)), (low, k, form))
     if found:
         low, place, form = min(found.values())

@@ -84,7 +84,7 @@ def sizes_holding(potential: FourierSum, frame: Frame, box: Iterable[float]) -> 
     steps = pivots(triangular(wave_vectors(potential), frame), frame)
     least = [max(2 * reach / step, 8) for reach, step in zip(box, steps)]
     powers = [1 << ceil(log2(each)) for each in least]
-    return [next(power * part // 8 for part in (5, 6, 8) if power * part >= 8 * each)
+    return [next((power * part // 8 for part in (5, 6) if power * part >= 8 * each), power)
             for power, each in zip(powers, least)]
 
 
