@@ -70,7 +70,7 @@ def _grounds(diagram, tori, file):
         yield "Open", "%s %% of the rectangle" % rounded_text(
             100 * _open_share(diagram), 3, up=True)
     for each in diagram.seen:
-        yield "Seen", "%s: a torus, not proved, rotation %s" % (
+        yield "Seen", "%s: an orbit as of a torus, rotation %s" % (
             box_words(diagram.names, [(x, x) for x in each.value]),
             ", ".join("%.9g" % x for x in each.rotation))
     sides = ", and %d by one point of the torus each" % len(diagram.sides)

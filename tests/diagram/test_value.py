@@ -56,7 +56,7 @@ def test_the_report_states_the_theorem(made):
     assert "every k in [0.1, 0.2]; k = 0.9.\n" in text and "converse-check k.map" in text
     assert "omega = 0.618033988749... = [0; 1, 1, ...] (golden)" in text
     assert "Open       0 <= k < 0.1; 0.2 < k < 0.9; 0.9 < k < 1.05; 1.2 < k < 1.3\n" in text
-    assert "Seen       k = 0.93: a torus, not proved" in text
+    assert "Seen       k = 0.93: an orbit as of a torus" in text
     nothing = Diagram.of(StandardMap((0, 2))).report()
     assert nothing.startswith("UNDECIDED") and "Open       0 <= k <= 2\n" in nothing
 
