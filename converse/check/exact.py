@@ -17,6 +17,7 @@ from .limits import FIRST_TRY_SITES, MAX_SITES
 
 VECTOR_BITS = 28                        # of the vectors; the multipliers have twice as many
 UNIT_BITS = 56                          # of the second variation
+BY_FAR = 64                             # of eigenvalues: x* begins a test vector above this ratio
 
 # A wave of a prism: k and the phase; amplitude and parts, as pairs (symbol, part); what p' cos y
 # and p' sin y are off by at most, computed as these numbers times cosines and sines.
@@ -196,10 +197,11 @@ def test_vectors(ahead, back, tail):
     any vectors give a bound.
 
     At each site the recursions from both ends of the orbit are compared, the one from the lane's
-    own end, except at x*, only where it has not failed.  Of each part of the orbit that they cover
-    without beginning anew, where both together have a negative eigenvalue that is nearest to zero,
-    and n as a rule is largest, is its eigenvector; n follows outwards by the recursions.  The part
-    is taken where this eigenvalue is lowest: others may contradict next to nothing.
+    own end only where it has not failed.  Of each part of the orbit that they cover without
+    beginning anew, where both together have a negative eigenvalue that is nearest to zero, and n
+    as a rule is largest, is its eigenvector; n follows outwards by the recursions.  The part is
+    taken where this eigenvalue is lowest: others may contradict next to nothing.  Where both fail,
+    x* is taken if its eigenvalue is lower by far: where amplitudes are in the thousands.
     """
     blocks = [*reversed(back), *ahead]
     left = recursion(blocks, len(back), tail)
@@ -208,11 +210,13 @@ def test_vectors(ahead, back, tail):
     for k, (block, (d, _, begin), (beyond, _, end)) in enumerate(zip(blocks, left, right)):
         form = [x + y - z for x, y, z in zip(d, beyond, block)]
         low = least(form)
-        if low < 0 and (k == len(back) - 1 or not (begin if k < len(back) else end)):
+        if low < 0 and not (begin if k < len(back) else end):
             found[begin, end] = max(found.get((begin, end), (-math.inf,)), (low, k, form))
+        elif low < 0 and k == len(back) - 1 and end:
+            found[begin, end] = low / BY_FAR, k, form
     if found:
-        low, place, form = min(found.values())
-        n[place] = eigenvector(form, low)
+        _, place, form = min(found.values())
+        n[place] = eigenvector(form, least(form))
         for k in range(place, left[place][2], -1):
             n[k - 1] = times(left[k - 1][1], n[k])
         for k in range(place + 1, len(n) - right[place][2]):
