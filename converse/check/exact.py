@@ -17,7 +17,6 @@ from .limits import FIRST_TRY_SITES, MAX_SITES
 
 VECTOR_BITS = 28                        # of the vectors; the multipliers have twice as many
 UNIT_BITS = 56                          # of the second variation
-BY_FAR = 64                             # of eigenvalues: x* begins a test vector above this ratio
 
 # A wave of a prism: k and the phase; amplitude and parts, as pairs (symbol, part); what p' cos y
 # and p' sin y are off by at most, computed as these numbers times cosines and sines.
@@ -193,15 +192,13 @@ def recursion(blocks, middle, tail):
 
 
 def test_vectors(ahead, back, tail):
-    """Vectors n for the sites of both lanes, which have these matrices; in double precision, since
-    any vectors give a bound.
+    """Vectors n for the sites of both lanes, with these matrices: in doubles, as any n will do.
 
     At each site the recursions from both ends of the orbit are compared, the one from the lane's
-    own end only where it has not failed.  Of each part of the orbit that they cover without
-    beginning anew, where both together have a negative eigenvalue that is nearest to zero, and n
-    as a rule is largest, is its eigenvector; n follows outwards by the recursions.  The part is
-    taken where this eigenvalue is lowest: others may contradict next to nothing.  Where both fail,
-    x* is taken if its eigenvalue is lower by far: where amplitudes are in the thousands.
+    own end only where it has not failed.  Of each part that they cover without beginning anew, n at
+    the place where both together have the negative eigenvalue nearest to zero is its eigenvector,
+    and follows outwards.  The part with the lowest is taken: others may contradict next to nothing.
+    Where both fail, x* is taken if its eigenvalue is 64 times lower: of amplitudes in thousands.
     """
     blocks = [*reversed(back), *ahead]
     left = recursion(blocks, len(back), tail)
@@ -213,7 +210,7 @@ def test_vectors(ahead, back, tail):
         if low < 0 and not (begin if k < len(back) else end):
             found[begin, end] = max(found.get((begin, end), (-math.inf,)), (low, k, form))
         elif low < 0 and k == len(back) - 1 and end:
-            found[begin, end] = low / BY_FAR, k, form
+            found[begin, end] = low / 64, k, form
     if found:
         _, place, form = min(found.values())
         n[place] = eigenvector(form, least(form))
