@@ -8,19 +8,16 @@ matplotlib (the extra "plot") and, for tori, the extra "tori".  All on the line 
 11.21436 epsilon.  --draw draws the tables that are there.
 """
 
-import contextlib
-import csv
-import io
 import itertools
 import math
 import os
-import platform
 import random
 import sys
 import time
 from fractions import Fraction
 from pathlib import Path
 
+import output
 import sides
 
 import converse
@@ -29,7 +26,6 @@ from converse.draw import plot
 from converse.model.map import LINE, FourierMap, MuldoonMap
 from converse.model.problem import Problem
 from converse.storage import files
-from converse.storage.files import ConverseError
 
 TOP = "0.0280"                          # above it there is nothing left to prove
 
@@ -102,10 +98,6 @@ def timed(problem, **options):
         proof = converse.prove(problem, jobs=1, **options)
         seconds.append(time.process_time() - began)
     return proof, min(seconds)
-
-
-def _yes(truth):
-    return "yes" if truth else "no"
 
 
 def bound(quick):
@@ -210,7 +202,8 @@ def wall(quick):
                                    digits=20 if method == "thesis" else None, method=method,
                                    time_limit=WALL_SECONDS)
             counts = proof.counts
-            yield method, epsilon, counts.proved, counts.most_cuts, _yes(proof.no_tori)
+            yield (method, epsilon, counts.proved, counts.most_cuts,
+                   "yes" if proof.no_tori else "no")
             if not proof.no_tori:
                 break
 
@@ -354,50 +347,21 @@ CHARTS = {
 }
 
 
-def machine():
-    """The machine, in a line."""
-    model = ""
-    with contextlib.suppress(OSError), open("/proc/cpuinfo", encoding="utf-8",
-                                            errors="replace") as file:
-        lines = [line.partition(":") for line in file if line.startswith("model name")]
-        model = " ".join(lines[0][2].split()) + ", " if lines else ""
-    count = os.cpu_count() or 1
-    return "%s, %s%d core%s" % (platform.machine(), model, count, "" if count == 1 else "s")
-
-
-def chart(name, rows, kind, caption=True):
-    """A chart of these rows, as the bytes of a file of that kind; with a caption or without."""
-    from matplotlib import style
-    from matplotlib.figure import Figure
-
+def chart(name, rows, caption=True):
+    """A chart of these rows, as the bytes of an SVG file; with a caption or without."""
     height = 4.3                        # inches
-    with style.context(["default", plot.CHART]):
-        figure = Figure(figsize=(7.2, height))
-        words = CHARTS[name][2](figure, rows) + "\n" + machine().replace("$", "")
+    with output.figure(plot.CHART, figsize=(7.2, height)) as figure:
+        words = CHARTS[name][2](figure, rows)
         figure.subplots_adjust(left=0.11, right=0.97, bottom=0.5 / height, top=1 - 0.4 / height)
         if caption:
             figure.text(0.11, -0.04 / height, words, color="0.35", va="top", linespacing=1.4)
-        return plot.encode(figure, kind, dpi=150, pad_inches=0.12)
-
-
-def _words(row):
-    return ["%.4g" % item if isinstance(item, float) else str(item) for item in row]
-
-
-def table(name, rows):
-    """The rows as the bytes of a CSV file."""
-    text = io.StringIO(newline="")
-    csv.writer(text, lineterminator="\n").writerows(
-        [CHARTS[name][0]] + [_words(row) for row in rows])
-    return text.getvalue().encode("utf-8")
+        return plot.encode(figure, "svg", pad_inches=0.12)
 
 
 def read(name, path):
     """The rows of a table.  ConverseError: it is not a table of this chart."""
-    header, *rows = csv.reader(io.StringIO(files.read_text(path, "table", ": is no such table")))
-    if tuple(header) != CHARTS[name][0] or not rows:
-        raise ConverseError("%s: is not a table of the chart %s; measure anew" % (path, name))
-    return [tuple(map(_number, header, row)) for row in rows]
+    header = CHARTS[name][0]
+    return [tuple(map(_number, header, row)) for row in output.read(header, path)]
 
 
 def _number(column, word):
@@ -408,13 +372,10 @@ def _number(column, word):
 
 
 def parser():
-    p = Parser(prog="chart.py", allow_abbrev=False, description=(
-        "Measures on this machine and draws four charts: angles, bound, width, wall."), epilog=(
-        "Exit status: 0 all are written; 2 bad usage or directory; 130 interrupted."))
+    p = Parser(prog="chart.py", description="Measures on this machine, and draws these charts: %s."
+               % ", ".join(CHARTS))
     p.add_argument("directory", nargs="?", default=os.curdir,
                    help="where to write chart-NAME.svg and chart-NAME.csv (default: here)")
-    p.add_argument("--format", choices=plot.FORMATS, default=plot.FORMATS[0],
-                   help="of the charts")
     p.add_argument("--no-caption", action="store_true", help="leave out the captions")
     p.add_argument("--quick", action="store_true", help="leave out what takes long")
     p.add_argument("--only", choices=CHARTS, metavar="NAME", help="of %s" % ", ".join(CHARTS))
@@ -423,31 +384,19 @@ def parser():
 
 
 def run(options):
-    try:
-        plot.check()
-    except ConverseError:
-        raise ConverseError("charts need matplotlib; pip install 'converse-kam[plot]'") from None
-    try:
-        os.makedirs(options.directory, exist_ok=True)
-    except OSError as error:
-        raise ConverseError("%s: cannot be made a directory (%s); name another place"
-                            % (options.directory, files.reason(error))) from None
-    paths = {name: [os.path.join(options.directory, "chart-%s.%s" % (name, ending))
-                    for ending in (options.format, "csv")]
-             for name in CHARTS if options.only in (None, name)}
-    for path in itertools.chain(*paths.values()):
-        files.check_writable(path)
-    for name in paths:
-        header, measure, _ = CHARTS[name]
-        rows = read(name, paths[name][1]) if options.draw else []
-        for row in () if options.draw else measure(options.quick):
-            rows.append(row)
-            print("%s: %s" % (name, ", ".join(map(" ".join, zip(header, _words(row))))),
-                  flush=True)
-        picture_of = chart(name, rows, options.format, caption=not options.no_caption)
-        for path, data in zip(paths[name], (picture_of, table(name, rows))):
-            files.write(path, data)
-    print("written: " + " ".join(itertools.chain(*paths.values())), flush=True)
+    plot.check()
+    os.makedirs(options.directory, exist_ok=True)
+    for name, (header, measure, _) in CHARTS.items():
+        if options.only in (None, name):
+            picture, data = (os.path.join(options.directory, "chart-%s.%s" % (name, ending))
+                             for ending in ("svg", "csv"))
+            files.check_writable(picture)
+            rows = read(name, data) if options.draw else []
+            for row in () if options.draw else measure(options.quick):
+                rows.append(row)
+                print(name, *row, flush=True)
+            files.write(picture, chart(name, rows, caption=not options.no_caption))
+            files.write_text(data, output.text(header, rows))
     return 0
 
 

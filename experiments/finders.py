@@ -9,16 +9,17 @@ distance to the proved orbit that damped Newton leads to from there.  Writes orb
 """
 
 import argparse
-import csv
 import os
 import time
 from dataclasses import replace
 
 import numpy as np
+import output
 
 from converse import orbits
 from converse.draw import plot
 from converse.orbits.solver import newton
+from converse.storage import files
 
 TYPE = (1432, 1897), 2513
 EPS = 0.0125, 0.02
@@ -104,11 +105,7 @@ def measure(eps):
 
 def draw(rows):
     """The figure, as the bytes of an SVG file."""
-    from matplotlib import style
-    from matplotlib.figure import Figure
-
-    with style.context(["default", plot.CHART]):
-        figure = Figure(figsize=(6, 3.8))
+    with output.figure(plot.CHART, figsize=(6, 3.8)) as figure:
         axes = figure.subplots()
         for name, column, line, colour, words, place in CURVES:
             mine = [row for row in rows if row[:2] == (DRAWN, name)]
@@ -120,12 +117,13 @@ def draw(rows):
         return plot.encode(figure, "svg")
 
 
+COLUMNS = "eps", "method", "tolerance", "seconds", "shadow", "distance", "label"
+
+
 def read(path):
     """The rows of a table."""
-    with open(path, encoding="ascii", newline="") as file:
-        _, *rows = csv.reader(file)
     return [(float(eps), name, *map(float, numbers), label)
-            for eps, name, *numbers, label in rows]
+            for eps, name, *numbers, label in output.read(COLUMNS, path)]
 
 
 def main():
@@ -137,13 +135,9 @@ def main():
     os.makedirs(options.directory, exist_ok=True)
     name = os.path.join(options.directory, "orbit-finders")
     rows = read(name + ".csv") if options.draw else [row for eps in EPS for row in measure(eps)]
-    with open(name + ".svg", "wb") as file:
-        file.write(draw(rows))
+    files.write(name + ".svg", draw(rows))
     if not options.draw:
-        with open(name + ".csv", "w", encoding="ascii", newline="") as file:
-            table = csv.writer(file, lineterminator="\n")
-            table.writerow(("eps", "method", "tolerance", "seconds", "shadow", "distance", "label"))
-            table.writerows(rows)
+        files.write_text(name + ".csv", output.text(COLUMNS, rows))
 
 
 if __name__ == "__main__":

@@ -11,8 +11,6 @@ hour.  --draw draws the table that is there.  All takes ten minutes of one core 
 """
 
 import concurrent.futures
-import csv
-import io
 import multiprocessing
 import os
 import resource
@@ -21,6 +19,8 @@ import tempfile
 import time
 from fractions import Fraction
 from pathlib import Path
+
+import output
 
 import converse
 from converse import tori
@@ -121,19 +121,10 @@ def distance(name, value):
     return abs(float(Fraction(value)) / FRONTIER[name] - 1)
 
 
-def table(rows):
-    text = io.StringIO(newline="")
-    csv.writer(text, lineterminator="\n").writerows(
-        [COLUMNS] + [["%.4g" % x if isinstance(x, float) else x for x in row] for row in rows])
-    return text.getvalue()
-
-
 def read(path):
     """The rows of a table.  ConverseError: it is none."""
-    header, *rows = csv.reader(io.StringIO(files.read_text(path, "table", ": is no such table")))
-    if tuple(header) != COLUMNS or not rows:
-        raise files.ConverseError("%s: is not a table of this script; measure anew" % path)
-    return [(*row[:3], float(row[3]), float(row[4]), int(row[5]), *row[6:]) for row in rows]
+    return [(*row[:3], float(row[3]), float(row[4]), int(row[5]), *row[6:])
+            for row in output.read(COLUMNS, path)]
 
 
 def nearer(rows, name, side):
@@ -144,11 +135,7 @@ def nearer(rows, name, side):
 
 def draw(rows):
     """The picture, as the bytes of an SVG file."""
-    from matplotlib import style
-    from matplotlib.figure import Figure
-
-    with style.context(["default", plot.CHART]):
-        figure = Figure(figsize=(7.2, 3.9))
+    with output.figure(plot.CHART, figsize=(7.2, 3.9)) as figure:
         panels = figure.subplots(1, 2, gridspec_kw={"wspace": 0.32})
         for axes, column, words in ((panels[0], 3, "CPU time (seconds)"),
                                     (panels[1], 5, "bytes of the proof file or the certificate")):
@@ -181,8 +168,8 @@ def run(options):
         rows = []
         for row in measure(options.quick):
             rows.append(row)
-            files.write_text(data, table(rows))
-            print(table(rows).splitlines()[-1], flush=True)
+            files.write_text(data, output.text(COLUMNS, rows))
+            print(*row, flush=True)
     files.write(picture, draw(read(data)))
     return 0
 

@@ -4,23 +4,22 @@
 
 For the 800 closest pairs of points of an orbit, L = |dp|/|dx|.  Where orbits have contracted into
 filaments the thesis saw the largest L at the smallest |dx|, with slope -1 and in "two populations",
-and suspected noise.  Writes smoothness.svg and smoothness.csv into DIRECTORY (build).  All pairs
+and suspected noise.  Writes smoothness.svg into DIRECTORY (build).  All pairs
 except those at eps 0.0075 belong to proved orbits, whose points are known to 10^-20 or better.  So
 the rise is not noise.  A few seconds.
 """
 
 import argparse
-import csv
 import math
 import os
-import sys
 from collections import Counter
 from fractions import Fraction
 
 import numpy as np
+import output
 from pairs import pairs as closest
 
-from converse import ConverseError, orbits
+from converse import orbits
 from converse.draw import plot
 
 SPIRAL, LONGER = ((1432, 1897), 2513), ((2513, 3329), 4410)
@@ -86,11 +85,7 @@ def measure(kind, eps, digits):
 
 def draw(measured):
     """The figure, as the bytes of an SVG file; each line goes through an orbit's steepest pair."""
-    from matplotlib import style
-    from matplotlib.figure import Figure
-
-    with style.context(["default", plot.CHART]):
-        figure = Figure(figsize=(6, 3.8))
+    with output.figure(plot.CHART, figsize=(6, 3.8)) as figure:
         axes = figure.subplots()
         for (state, _, _, distance, momentum), colour, words, at in (
                 (measured[0], "0.45", "a smooth surface", (1.6e-2, 1.2e-5)),
@@ -110,25 +105,11 @@ def draw(measured):
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
-    parser.add_argument("directory", nargs="?", default="build", help="of both files (build)")
+    parser.add_argument("directory", nargs="?", default="build", help="of the picture (build)")
     directory = parser.parse_args(arguments).directory
-    try:
-        os.makedirs(directory, exist_ok=True)
-        write(directory)
-    except (ConverseError, OSError) as error:
-        sys.exit("smoothness.py: %s" % error)
-
-
-def write(directory):
-    measured = [measure(*state) for state in STATES]
+    os.makedirs(directory, exist_ok=True)
     with open(os.path.join(directory, "smoothness.svg"), "wb") as file:
-        file.write(draw(measured))
-    with open(os.path.join(directory, "smoothness.csv"), "w", encoding="ascii", newline="") as file:
-        rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(("q", "eps", "i", "j", "dx", "dp"))
-        for state, *pairs in measured:
-            rows.writerows((state.q, state.eps, *pair)
-                           for pair in zip(*(a.tolist() for a in pairs)))
+        file.write(draw([measure(*state) for state in STATES]))
 
 
 if __name__ == "__main__":

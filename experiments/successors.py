@@ -9,7 +9,6 @@ successors.csv and successors.svg into DIRECTORY (build); --draw draws the table
 the successor on a torus that is proved.  A minute of one core; --planes as much.
 """
 
-import csv
 import math
 import os
 import sys
@@ -17,6 +16,7 @@ import time
 from fractions import Fraction
 
 import numpy as np
+import output
 
 import converse
 from converse import Problem, prove, tori
@@ -118,11 +118,7 @@ def successor(torus, star):
 
 
 def draw_planes(path):
-    from matplotlib import style
-    from matplotlib.figure import Figure
-
-    with style.context(["default", plot.STYLE]):
-        figure = Figure(figsize=(7.8, 3.1), layout="constrained")
+    with output.figure(plot.STYLE, figsize=(7.8, 3.1), layout="constrained") as figure:
         for axes, value in zip(figure.subplots(1, len(PLANES), sharey=True), PLANES):
             proof = searched(line(value), PLANE_DEPTH)
             colours = np.empty((PIXELS, PIXELS, 4))
@@ -141,13 +137,9 @@ def draw_planes(path):
 
 
 def draw(table, path):
-    from matplotlib import style
-    from matplotlib.figure import Figure
-
     titles = {"line": ("the line a = b = c/2", "ε"),
               "froeschle": ("Froeschlé, B = %s" % decimal_text(COUPLING), "K")}
-    with style.context(["default", plot.STYLE]):
-        figure = Figure(figsize=(6.4, 2.8), layout="constrained")
+    with output.figure(plot.STYLE, figsize=(6.4, 2.8), layout="constrained") as figure:
         for axes, name in zip(figure.subplots(1, 2, sharey=True), MAPS):
             rows = [row for row in table if row[0] == name]
             axes.plot([float(row[1]) for row in rows], [1 - float(row[2]) for row in rows], "o-",
@@ -165,14 +157,12 @@ def run(options):
         draw_planes(path + "-plane.svg")
         return 0
     if not options.draw:
-        with open(path + ".csv", "w", encoding="ascii", newline="") as file:
-            out = csv.writer(file, lineterminator="\n")
-            out.writerow(COLUMNS)
-            for row in measure():
-                print(*row, flush=True)
-                out.writerow(row)
-    with open(path + ".csv", encoding="ascii", newline="") as file:
-        draw(list(csv.reader(file))[1:], path + ".svg")
+        rows = []
+        for row in measure():
+            print(*row, flush=True)
+            rows.append(row)
+        files.write_text(path + ".csv", output.text(COLUMNS, rows))
+    draw(output.read(COLUMNS, path + ".csv"), path + ".svg")
     return 0
 
 

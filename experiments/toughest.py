@@ -5,10 +5,10 @@
 Writes into DIRECTORY (build/toughest), and continues there when it was interrupted:
     sweep.csv     the onsets of a thousand vectors, well spread, of q from 300 to 1201
     search-K.csv  the same of vectors near the toughest, ever nearer and with ever larger q
-    near.csv, near-fixed.csv, golden.csv, golden-fixed.csv    approximants of one vector
+    near.csv      approximants of one vector
     chapter.csv   the thesis's two vectors
-    toughest.svg, sequence.svg, frontier.svg
-    toughest.csv  what the first and the last of these show
+    toughest.svg, frontier.svg
+    toughest.csv  what both show
 
 The onset of a vector is the eps above which the first Lyapunov exponent of its orbit exceeds 1/q
 (orbits.onset).  All that is found here is seen, not proved: an onset at a larger eps speaks for a
@@ -16,14 +16,13 @@ torus near the vector up to there, and proves none.
 """
 
 import argparse
-import csv
-import io
 import math
 import os
 import random
 import sys
 
 import numpy as np
+import output
 from sweep import onsets
 
 from converse import orbits
@@ -33,8 +32,6 @@ from converse.draw.plot import BLUE, DARK, GREEN, ORANGE, VERMILLION
 from converse.storage import files
 
 TRIG = {"step": 0.0005, "width": 1e-5, "top": 0.02}
-STANDARD = {"step": 0.02, "width": 1e-5, "top": 1.5}
-FIXED = 1e-3                            # the other criterion: an exponent, whatever q is
 
 # 1/tau and 1/tau^2, tau^3 = tau + 1: their multiples modulo 1 fill the square evenly.
 SPREAD = 0.7548776662466927, 0.5698402909980532
@@ -46,14 +43,11 @@ TORUS_UP_TO = 0.010                     # a torus is proved for every eps from 0
 TORUS_AT = 0.011, 0.0115, 0.0120, 0.0121, 0.0122    # and for these
 TOP = 0.0335                            # of the picture
 CHAPTER = ((1432, 1897), 2513), ((377, 2330), 3770)
-K_C = 0.971635406                       # where the standard map's golden torus breaks up (Greene)
 RESONANCES = [(k0, k1) for k0 in range(4) for k1 in range(-3, 4)
               if 0 < k0 + abs(k1) <= 3 and math.gcd(k0, k1) == 1 and (k0 or k1 == 1)]
 
-SIZES = {"full": {"vectors": 1000, "q": (300, 1200), "rounds": 7, "children": 4, "near": 7000,
-                  "golden": 3000},
-         "quick": {"vectors": 40, "q": (100, 300), "rounds": 2, "children": 1, "near": 600,
-                   "golden": 400}}
+SIZES = {"full": {"vectors": 1000, "q": (300, 1200), "rounds": 7, "children": 4, "near": 7000},
+         "quick": {"vectors": 40, "q": (100, 300), "rounds": 2, "children": 1, "near": 600}}
 PARENTS = 8                             # of a round of the search
 
 
@@ -88,14 +82,6 @@ def approximants(w, most, quality=0.9, least=30):
     good = np.abs(q * w - p).max(1) * np.sqrt(q[:, 0]) < quality
     return [(tuple(map(int, each)), int(size)) for each, size in zip(p[good], q[good, 0])
             if math.gcd(*map(int, each), int(size)) == 1]
-
-
-def golden(most):
-    p, q = 1, 2
-    while q < most:
-        if q > 20:
-            yield (p,), q
-        p, q = q, p + q
 
 
 # ---- onsets
@@ -134,11 +120,7 @@ def search(first, sizes, find):
 
 
 def draw(path, size, fill, *arguments):
-    from matplotlib import style
-    from matplotlib.figure import Figure
-
-    with style.context(["default", plot.STYLE]):
-        figure = Figure(figsize=size)
+    with output.figure(plot.STYLE, figsize=size) as figure:
         fill(figure, *arguments)
         files.write(path, plot.encode(figure, "svg", pad_inches=0.08))
 
@@ -170,28 +152,6 @@ def draw_map(figure, table, best):
               "$|k_0| + |k_1|$ up to 3.  All other vectors are mirror images of these."
               % (table["q"].min(), table["q"].max()), transform=axes.transAxes,
               va="top", color="0.35")
-
-
-def draw_sequence(figure, near, near_fixed, gold, gold_fixed):
-    left, right = figure.subplots(1, 2, gridspec_kw={"wspace": 0.3})
-    for axes, free, fixed, title, span, line, words in (
-            (left, gold, gold_fixed, "the standard map, golden mean", (0.958, 0.978), K_C,
-             "it breaks up: %.6f" % K_C),
-            (right, near, near_fixed, "trig, (%.6f, %.6f)" % NEAR, (0.0119, 0.0135), TORI,
-             "tori seen by Fourier series: %g" % TORI)):
-        axes.plot(free["q"], middle(free), "s", color=BLUE, markersize=3.5,
-                  label="first exponent above 1/q")
-        axes.plot(fixed["q"], middle(fixed), "o", color="0.65", markersize=3.5,
-                  label="above %g, whatever q is" % FIXED)
-        axes.axhline(line, color=VERMILLION, zorder=0)
-        axes.annotate(words, (1, line), (-2, -3), ha="right", va="top", color=VERMILLION,
-                      xycoords=("axes fraction", "data"), textcoords="offset points")
-        axes.set(xscale="log", xlabel="q", title=title, ylim=span)
-        axes.xaxis.set_minor_formatter("")
-        axes.grid(color="0.93")
-    left.set_ylabel("onset: k")
-    right.set_ylabel("onset: ε")
-    left.legend(loc="upper right")
 
 
 def draw_frontier(figure, table, last, chapter):
@@ -234,20 +194,16 @@ SETS = "sweep", "search", "near", "chapter"
 COLUMNS = "set", "p", "q", "eps_below", "eps_above"
 
 
-def write(path, tables):
+def write(path, shown):
     """The tables of SETS in one CSV file."""
-    text = io.StringIO(newline="")
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(COLUMNS)
-    for name, table in zip(SETS, tables):
-        out.writerows((name, "%d %d" % tuple(row["p"]), row["q"],
-                       *("%.7g" % row[column] for column in COLUMNS[3:])) for row in table)
-    files.write_text(path, text.getvalue())
+    files.write_text(path, output.text(COLUMNS, (
+        (name, "%d %d" % tuple(row["p"]), row["q"], *("%.7g" % row[end] for end in COLUMNS[3:]))
+        for name, table in zip(SETS, shown) for row in table)))
 
 
 def read(path):
     """The tables of SETS from such a file."""
-    _, *rows = csv.reader(io.StringIO(files.read_text(path, "table", ": is no such table")))
+    rows = output.read(COLUMNS, path)
     kinds = [("p", "i8", (2,)), ("q", "i8"), ("eps_below", "f8"), ("eps_above", "f8")]
     return [np.array([(tuple(map(int, p.split())), int(q), float(low), float(high))
                       for each, p, q, low, high in rows if each == name], dtype=kinds)
@@ -293,12 +249,7 @@ def main():
     table = find("sweep.csv", orbits.trig, spread(sizes["vectors"], sizes["q"]), **TRIG)
     best = search(table, sizes, find)
     chapter = find("chapter.csv", orbits.trig, CHAPTER, **TRIG)
-    near, gold = approximants(NEAR, sizes["near"]), list(golden(sizes["golden"]))
-    sequences = [find("%s%s.csv" % (name, end), potential, vectors, **how, **criterion)
-                 for name, potential, vectors, how in (
-                     ("near", orbits.trig, near, TRIG),
-                     ("golden", orbits.standard, gold, STANDARD))
-                 for end, criterion in (("", {}), ("-fixed", {"exponent": FIXED}))]
+    near = find("near.csv", orbits.trig, approximants(NEAR, sizes["near"]), **TRIG)
     for eps in (0.004, 0.006, 0.008, 0.010, 0.011, 0.012):
         print("before their onset at %.3f: %4.1f %%" % (eps, 100 * (middle(table) > eps).mean()))
     print("the toughest:")
@@ -306,12 +257,10 @@ def main():
         w0, w1 = row["p"] / row["q"]
         print("    (%d, %d)/%d = (%.6f, %.6f) at %.5f" % (*row["p"], row["q"], w0, w1, middle(row)))
     print("approximants of (%.9f, %.9f):" % NEAR)
-    for row, fixed in zip(*sequences[:2]):
-        print("    (%d, %d)/%d at %.5f, by the fixed exponent at %.5f"
-              % (*row["p"], row["q"], middle(row), middle(fixed)))
-    long = sequences[0][sequences[0]["q"] >= sizes["near"] // 3]
+    for row in near:
+        print("    (%d, %d)/%d at %.5f" % (*row["p"], row["q"], middle(row)))
+    long = near[near["q"] >= sizes["near"] // 3]
     write(path("toughest.csv"), (table, best, long, chapter))
-    draw(path("sequence.svg"), (8.4, 3.2), draw_sequence, *sequences)
     pictures(options.directory)
     return 0
 

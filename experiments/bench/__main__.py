@@ -178,34 +178,7 @@ def steps(repeat):
         kernels.call("double_sincos_ns", [3, 300000], 1, 20)[0] for _ in range(repeat)))
 
 
-def orbits(repeat):
-    """Milliseconds of a step of damped Newton, and seconds of whole families, of the orbits."""
-    import numpy as np
-
-    from converse._native import ffi, lib
-    from converse.orbits import follow, straight, trig
-    from converse.orbits.potential import address
-
-    print("periodic orbits, trig: milliseconds per step of damped Newton; "
-          "16 eps from 0.0025 to 0.04")
-    for p, q in (((1432, 1897), 2513), ((377, 2330), 3770), ((57031, 75550), 100083)):
-        guess = straight(trig, p, q)
-        seconds = []
-        for _ in range(repeat):
-            how, u = ffi.new("cv_relaxed *"), np.zeros((q, 2))
-            begin = time.perf_counter()
-            lib.cv_relax(guess.potential.native, q, 0.0025, address(guess.base), address(u), -1,
-                         1e-13, 10, how)
-            seconds.append((time.perf_counter() - begin) / how.steps)
-        begin = time.perf_counter()
-        if q < 10000:
-            follow(trig, p, q, [0.0025 * k for k in range(1, 17)])
-        family = time.perf_counter() - begin
-        print("q = %6d: %7.3f per step%s" % (q, 1000 * min(seconds),
-                                             ", family %.2f s" % family if q < 10000 else ""))
-
-
-PARTS = {part.__name__: part for part in (processes, images, steps, orbits, frontier)}
+PARTS = {part.__name__: part for part in (processes, images, steps, frontier)}
 
 
 def main():

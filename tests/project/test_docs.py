@@ -70,11 +70,14 @@ def test_extras_are_added_by_make():
     assert not any(".venv/bin/pip" in text for text in TEXTS.values())
 
 
-def test_experiments_exist():
-    shown = {name for text in TEXTS.values()
-             for name in re.findall(r"`(?:experiments/)?([a-z_]+\.py)`", text)}
-    scripts = {path.name for path in (ROOT / "experiments").glob("*.py")}
-    assert scripts <= shown
+def test_experiments_are_of_use():
+    """A page or another script names each, by which it is found or made."""
+    scripts = {path: path.read_text("utf-8") for path in (ROOT / "experiments").glob("*.py")}
+    pages = "\n".join([*TEXTS.values(), (ROOT / "docs" / "figures.csv").read_text("ascii")])
+    for path in scripts:
+        assert re.search(r"\b%s\b" % re.escape(path.name), pages) or any(
+            re.search(r"(?m)^(import|from) %s\b" % path.stem, text)
+            for text in scripts.values()), path
 
 
 def test_experiments_draw_as_the_package_does():
@@ -82,7 +85,6 @@ def test_experiments_draw_as_the_package_does():
     for path in (ROOT / "experiments").glob("*.py"):
         text = path.read_text("utf-8")
         if "figsize" in text and path.name != "chart.py":       # which has notes in small letters
-            assert re.search(r"plot\.(STYLE|CHART)", text)
             assert "fontsize" not in text and "frameon" not in text
             assert not re.search("#[0-9a-f]{6}|varepsilon", text), path
 

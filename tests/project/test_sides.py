@@ -2,6 +2,7 @@
 
 import xml.etree.ElementTree as ET
 
+import output
 import pytest
 import sides
 
@@ -48,7 +49,7 @@ def test_the_frontier_lies_between():
 def test_the_table_is_drawn(tmp_path):
     pytest.importorskip("matplotlib")
     path = tmp_path / "chart-sides.csv"
-    path.write_text(sides.table(ROWS))
+    path.write_text(output.text(sides.COLUMNS, ROWS))
     assert [row[:6] for row in sides.read(path)] == [row[:6] for row in ROWS]
     assert sides.main([str(tmp_path), "--draw"]) == 0
     ET.parse(tmp_path / "chart-sides.svg")
