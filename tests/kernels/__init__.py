@@ -98,11 +98,6 @@ def sin(x: Number, dp: int, **options: Any) -> Fraction:
     return call("sincos", [x], 2, dp, **options)[0]
 
 
-def cos(x: Number, dp: int, **options: Any) -> Fraction:
-    """The cosine of x to dp decimal places."""
-    return call("sincos", [x], 2, dp, **options)[1]
-
-
 def sqrt(x: Number, dp: int, **options: Any) -> Fraction:
     """The square root of x to dp decimal places."""
     return call("sqrt", [x], 2, dp, **options)[0]
@@ -118,16 +113,9 @@ def bound_cos(lo: Number, hi: Number, dp: int, **options: Any) -> Interval:
     return _pair(call("bound_sincos", [lo, hi], 4, dp, **options)[2:])
 
 
-def bound_inverse(matrix: Sequence[Sequence[Number]], dp: int,
-                  **options: Any) -> Tuple[Rows, Fraction]:
-    """An approximate inverse of a 4 x 4 matrix, a list of rows, and a bound of its error."""
-    out = call("inverse", [x for row in matrix for x in row], 17, dp, **options)
-    return _rows(out[:16], 4), out[16]
-
-
 def inverse(matrix: Sequence[Sequence[Number]], dp: int, **options: Any) -> Rows:
-    """The approximate inverse alone."""
-    return bound_inverse(matrix, dp, **options)[0]
+    """An approximate inverse of a 4 x 4 matrix, a list of rows."""
+    return _rows(call("inverse", [x for row in matrix for x in row], 17, dp, **options)[:16], 4)
 
 
 def image(prism: Prism, dp: int, **options: Any) -> Tuple[List[Fraction], Rows]:

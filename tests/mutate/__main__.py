@@ -46,7 +46,7 @@ GUESSES = ("thesis/start.c", "loewner/start.c", "loewner/score.c",
 # stands which tests of a file, as pytest's -k takes it.
 NUMBERS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py",
            "test_bounds.py",
-           "test_images.py", "test_search.py"]
+           "test_images.py", "test_promises.py", "test_search.py"]
 SHARP = ["test_loewner.py", "test_waves.py", "test_search.py"]
 TORI = ["test_certificate.py", "tori/test_proved.py"]
 FINDERS = ["test_orbits.py", "test_orbits_fail.py", "orbits/test_proved.py"]

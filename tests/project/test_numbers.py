@@ -288,14 +288,6 @@ def test_the_table_of_accuracy(accuracy):
                    for file in re.findall(r"\w+\.(?:[ch]|inc)\b", algorithm))
 
 
-def test_the_rows_of_accuracy(accuracy):
-    """Each can be measured, here from few cases, and what is promised is kept."""
-    for row in accuracy.ROWS:
-        seen = {name: accuracy.measured(row, 0.02 * TORTURE, name) for name in accuracy.DP}
-        assert any(seen.values()) and all(accuracy.kept(row, *each)
-                                          for each in seen.items()), row[0]
-
-
 def test_files_that_are_named_exist():
     """In the pages and in the comments of the C core; of C, and ours."""
     names = []

@@ -62,7 +62,7 @@ def boxes(rng, n):
 @pytest.mark.parametrize("arithmetic", ["apm", "double"])
 def test_encloses_and_is_tight(arithmetic):
     rng = rng_for("bd_trig" + arithmetic)
-    for low, high in boxes(rng, 2000 * TORTURE):
+    for low, high in boxes(rng, 500 * TORTURE):
         s_low, s_high, c_low, c_high = kernels.call("bound_sincos", [low, high], 4, DP,
                                                     arithmetic=arithmetic)
         size = max(1, abs(low), abs(high))
