@@ -31,7 +31,11 @@ for name in HEADERS:
     with open("csrc/" + name) as header:
         ffi.cdef(header.read())
 # What C calls, and converse/orbits/potential.py defines.
-ffi.cdef('extern "Python+C" int cv_python_interrupts(void);')
+ffi.cdef("""extern "Python+C" {
+    int cv_python_interrupts(void);
+    void cv_python_evaluate(void *potential, long m, const double (*x)[2], double *value,
+                            double (*gradient)[2], double (*hessian)[3]);
+}""")
 ffi.set_source("converse._native", "".join(map('#include "%s"\n'.__mod__, HEADERS)),
                sources=SOURCES,
                include_dirs=["csrc"], libraries=["gmp"], extra_compile_args=FLAGS,

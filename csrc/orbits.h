@@ -9,18 +9,17 @@
    These functions work in doubles and promise nothing.  converse/orbits/enclosure.py proves orbits
    in balls. */
 
-enum { CV_FOURIER, CV_POLY, CV_FF };                    /* kinds of potentials */
-
 typedef struct {
-    int kind, n;
-    /* CV_FOURIER: V(x) = sum over t of cosine[t] cos(2 pi k.x) + sine[t] sin(2 pi k.x), where k is
-       k[2t], k[2t+1] */
+    int n;
+    /* NULL: V(x) = sum over t of cosine[t] cos(2 pi k.x) + sine[t] sin(2 pi k.x), where k is k[2t],
+       k[2t+1].  Otherwise Python computes V, and this is the handle of its Potential. */
+    void *python;
     int terms;
     const int *k;
     const double *cosine, *sine;
 } cv_potential;
 
-/* V, its gradient and Hessian at m points.  value, gradient or hessian may be NULL. */
+/* V, its gradient and Hessian at m points. */
 void cv_evaluate(const cv_potential *v, long m, const double (*x)[2], double *value,
                  double (*gradient)[2], double (*hessian)[3]);
 

@@ -10,7 +10,7 @@ from ..storage.files import ConverseError, plain
 from .common import SIGNALS, Parser, ProgressLine, check_figure, command, ending, say
 
 COMMAND = "converse-orbits"
-POTENTIALS = "trig", "poly", "ff", "froeschle", "standard"
+POTENTIALS = "trig", "froeschle", "standard"
 MOST_EPS = 10000                        # values of eps
 ENDING = ending(
     "converse-orbits standard 89/233 0.9 0.97 --minimax --prove -g ghost.svg",
@@ -20,7 +20,7 @@ ENDING = ending(
         (0, "all was found that was asked for"),
         (1, "an orbit was not found, is not a minimum, or is not proved with --prove"),
         (2, "bad usage, input or file"), SIGNALS))
-POTENTIAL = ("trig, poly, ff, froeschle, standard, or an input file: JSON of the harmonics of V "
+POTENTIAL = ("trig, froeschle, standard, or an input file: JSON of the harmonics of V "
              "(manual: reference/inputs)")
 AT = "the value of a parameter of the file; may be given again"
 NO_MINIMUM = "saddle", "stationary", "not stationary"

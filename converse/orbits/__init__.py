@@ -12,7 +12,7 @@ map, a type or a number is not as described.
 try:
     from .minimax import Pair
     from .onset import Onset, onset
-    from .potential import Potential, ff, froeschle, poly, standard, trig
+    from .potential import Potential, froeschle, standard, trig
     from .proved import NotProved, ProvedOrbit, prove
     from .solver import Family, follow, straight
     from .state import PeriodicOrbit
@@ -28,4 +28,4 @@ except ImportError as _error:           # raised when a name is used: the comman
         raise ConverseError(_MISSING)
 
 __all__ = ["Family", "NotProved", "Onset", "Pair", "PeriodicOrbit", "Potential", "ProvedOrbit",
-           "ff", "follow", "froeschle", "onset", "poly", "prove", "standard", "straight", "trig"]
+           "follow", "froeschle", "onset", "prove", "standard", "straight", "trig"]

@@ -10,8 +10,8 @@ from fractions import Fraction
 
 from flint import arb, arb_mat, ctx, fmpq, fmpz
 
-from .._native import lib
 from .limits import GUARD_BITS
+from .potential import Fourier
 
 
 def bits_of(places):
@@ -83,8 +83,10 @@ def square(v):
 # ---- potentials: functions of a point, base + u with base a rational number and u without radius,
 # ---- to a list of balls: V, its gradient, and the entries 00, 01, 11 of its Hessian
 
-def _fourier(potential, digits):
-    """All are linear in the cosines and sines of 2 pi k.x."""
+def law_of(potential, digits):
+    """All are linear in the cosines and sines of 2 pi k.x, unless the potential says otherwise."""
+    if not isinstance(potential, Fourier):
+        return potential.law
     turn, axes, terms = 2 * arb.pi(), range(potential.n), potential.coefficients(digits)
     columns = []
     for k, *both in terms:
@@ -109,42 +111,6 @@ def _fourier(potential, digits):
     return local
 
 
-def _modulo(base, u):
-    """The point in [0, 1)^n, exactly."""
-    x = [i + exact(j) for i, j in zip(base, u)]
-    return [i - i.floor() for i in x]
-
-
-def _poly(base, u):
-    """V = -4096 f(y0) g(y1), y = x - 1/2; with a = 1/4 - y^2, f = a^2 (a - 3/16), g = a^2:
-    f' = -6 y a (a - 1/8), f'' = -30 a^2 + 33 a/4 - 3/8, g' = -4 y a, g'' = 2 - 12 a."""
-    x = _modulo(base, u)
-    y0, y1 = (arb(i - fmpq(1, 2)) for i in x)
-    a, b = (arb(i * (1 - i)) for i in x)
-    f = a * a * (a - arb(3) / 16)
-    f1, f2 = -6 * y0 * a * (a - arb(1) / 8), (33 * a - 120 * a * a) / 4 - arb(3) / 8
-    g, g1, g2 = b * b, -4 * y1 * b, 2 - 12 * b
-    return [-4096 * i for i in (f * g, f1 * g, f * g1, f2 * g, f1 * g1, f * g2)]
-
-
-def _ff(base, u):
-    """V = -(c(x0) + c(x1))/4 - c(x0 + x1)/2, c = 1 - 24 y^2 + 32 y^3, y the distance to the nearest
-    integer, which is told exactly."""
-    def c(z):
-        z -= z.floor()
-        sign, y = (1, arb(z)) if z <= fmpq(1, 2) else (-1, arb(1 - z))
-        return 1 + y * y * (32 * y - 24), sign * y * (96 * y - 48), 192 * y - 48
-
-    x = _modulo(base, u)
-    (v0, d0, b0), (v1, d1, b1), (v, d, b) = c(x[0]), c(x[1]), c(x[0] + x[1])
-    return [i / -4 for i in (v0 + v1 + 2 * v, d0 + 2 * d, d1 + 2 * d,
-                             b0 + 2 * b, 2 * b, b1 + 2 * b)]
-
-
-LAWS = {lib.CV_FOURIER: _fourier, lib.CV_POLY: lambda potential, digits: _poly,
-        lib.CV_FF: lambda potential, digits: _ff}
-
-
 # ---- the state
 
 class Enclosure:
@@ -156,7 +122,6 @@ class Enclosure:
     """
 
     def __init__(self, state, eps):
-        self.law = LAWS[state.potential.kind]
         self.potential, self.q, self.n = state.potential, state.q, state.potential.n
         self.eps, self.places = eps, None
         self.base = [[fmpq(*x.as_integer_ratio()) + fmpq(j * p % self.q, self.q)
@@ -169,7 +134,7 @@ class Enclosure:
         if places != self.places:
             ctx.prec = bits_of(places)
             self.places, self.ulp = places, ball(Fraction(1, 10 ** places))
-            self.local = self.law(self.potential, places + GUARD_BITS // 3)
+            self.local = law_of(self.potential, places + GUARD_BITS // 3)
         eps = ball(self.eps)
         two, radii, squares, action = unit(n, 2), unit(n, 0), arb(0), arb(0)
         self.force, self.beta = [], []

@@ -29,7 +29,6 @@ Numerators = Union[int, Sequence[int]]      # the p of a type (p, q)
 TURN = 2 * math.pi
 # The scales of Fourier sums, as formulas name them.
 PER_PERIOD, TRIG = "1/(4 pi^2)", "8 sqrt 2/sqrt(207 + 33 sqrt 33)"
-STUDIED = {}                # by name, the potentials at the end of this file
 
 
 def known(source: Any) -> "Potential":
@@ -45,8 +44,7 @@ def known(source: Any) -> "Potential":
 
 @lru_cache(maxsize=64)
 def _of_map(source, name):
-    return Fourier.of(source.potential(), name + ".json" * (name in STUDIED), None, PER_PERIOD,
-                           TURN)
+    return Fourier.of(source.potential(), name, None, PER_PERIOD, TURN)
 
 
 def told(progress):
@@ -88,19 +86,20 @@ class Potential(Dynamics):
     2 pi: they are y = 2 pi x and J = 2 pi p.  The methods of the map take these, and evaluate()
     takes x.
 
+    A subclass has evaluate() and the properties here, and law() if its orbits are to be proved.
+
     Parameters
     ----------
     name : str
-        For reports.
+        For reports; of a potential that is no Fourier sum, also its name in the module of its
+        class.
     start : tuple of float, shape (n,)
-        A maximum of V, where orbits begin; n is the number of dimensions, 1 or 2.
-    kind : int
-        Of csrc/orbits.h.
+        A maximum of V, where orbits begin; n is the number of dimensions, 1 or 2, and 2 of a
+        potential that is no Fourier sum.
     """
 
     name: str
     start: Tuple[float, ...]
-    kind: int
 
     period = 1.0
 
@@ -114,17 +113,17 @@ class Potential(Dynamics):
     @property
     def formula(self) -> str:
         """V(x), or V(y), in words, exactly, for reports."""
-        return PIECEWISE[self.kind][0]
+        raise NotImplementedError
 
     @property
     def curvature(self) -> float:
         """An upper bound of the spectral norm of V'' anywhere."""
-        return PIECEWISE[self.kind][1]
+        raise NotImplementedError
 
     @property
     def lipschitz(self) -> float:
         """K with |V''(x) - V''(y)| <= K |x - y|, in these norms."""
-        return PIECEWISE[self.kind][2]
+        raise NotImplementedError
 
     @property
     def letters(self) -> str:           # type: ignore[override]
@@ -132,15 +131,19 @@ class Potential(Dynamics):
         return "xp" if self.period == 1 else "yJ"
 
     @cached_property
+    def _handle(self):
+        return ffi.new_handle(self)
+
+    @cached_property
     def native(self) -> Any:
         """What C takes."""
-        return ffi.new("cv_potential *", {"kind": self.kind, "n": self.n})
+        return ffi.new("cv_potential *", {"n": self.n, "python": self._handle})
 
     def __repr__(self) -> str:
-        return "orbits.%s" % self.name if self.name in STUDIED else "<potential %s>" % self.name
+        return "<potential %s>" % self.name
 
     def __reduce__(self):
-        return _studied, (self.name,)
+        return self.name
 
     def evaluate(self, x: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
         """V, its gradient and its Hessian.
@@ -160,14 +163,12 @@ class Potential(Dynamics):
         ValueError
             The array has another shape.
         """
-        x = points(x, self.n)
-        value, gradient, bend = np.empty(len(x)), np.empty((len(x), 2)), np.empty((len(x), 3))
-        lib.cv_evaluate(self.native, len(x), address(x), address(value, "double *"),
-                        address(gradient), address(bend, "double(*)[3]"))
-        hessian = np.empty((len(x), 2, 2))
-        hessian[:, 0, 0], hessian[:, 1, 1] = bend[:, 0], bend[:, 2]
-        hessian[:, 0, 1] = hessian[:, 1, 0] = bend[:, 1]
-        return value, gradient[:, :self.n], hessian[:, :self.n, :self.n]
+        raise NotImplementedError
+
+    def law(self, base: Sequence[Any], u: Sequence[Any]) -> List[Any]:
+        """V, its gradient, and the entries 00, 01 and 11 of its Hessian, as balls of python-flint
+        that hold them at the point base + u: base rational numbers, u balls without radius."""
+        raise NotImplementedError
 
     def _gradient(self, y):
         return self.period * self.evaluate(y / self.period)[1]
@@ -202,7 +203,7 @@ class Fourier(Potential):
         """The potential of a FourierSum; without a start a maximum of V is looked for.
         ValueError: it has three angles, or is too large for doubles."""
         two_at_most(source.dimension)
-        made = cls(name, start or (0.0,) * source.dimension, lib.CV_FOURIER, source, factor, period)
+        made = cls(name, start or (0.0,) * source.dimension, source, factor, period)
         made.curvature
         return made if start else replace(made, start=made._maximum())
 
@@ -248,10 +249,17 @@ class Fourier(Potential):
 
     @cached_property
     def native(self) -> Any:
-        made, (k, *both) = super().native, self.arrays
-        made.terms, made.k = len(k), address(k, "int *")
-        made.cosine, made.sine = (address(array, "double *") for array in both)
-        return made
+        k, *both = self.arrays
+        cosine, sine = (address(array, "double *") for array in both)
+        return ffi.new("cv_potential *", {"n": self.n, "terms": len(k), "k": address(k, "int *"),
+                                          "cosine": cosine, "sine": sine})
+
+    def evaluate(self, x: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        x = points(x, self.n)
+        value, gradient, bend = np.empty(len(x)), np.empty((len(x), 2)), np.empty((len(x), 3))
+        lib.cv_evaluate(self.native, len(x), address(x), address(value, "double *"),
+                        address(gradient), address(bend, "double(*)[3]"))
+        return value, gradient[:, :self.n], bend[:, [[0, 1], [1, 2]]][:, :self.n, :self.n]
 
     def coefficients(self, digits: int) -> List[Tuple[Tuple[int, ...], Ends, Ends]]:
         """[((k0, k1), ends of the cosine's factor, ends of the sine's)], scale and all, each to
@@ -277,23 +285,41 @@ class Fourier(Potential):
         return tuple(map(float, best[0]))
 
 
-_mine = threading.local()               # of each thread `error`, the exception that ended its C
+class _Mine(threading.local):
+    """Of each thread the exception that is to end its C."""
+
+    error = None
 
 
-def _interrupted(kind, error, trace):
+_mine = _Mine()
+
+
+def _keep(kind, error, trace):
     _mine.error = error
 
 
-@ffi.def_extern(error=1, onerror=_interrupted)
+@ffi.def_extern(error=1, onerror=_keep)
 def cv_python_interrupts():
     """Signals are looked for when Python begins to run, and Ctrl-C is raised then."""
-    return 0
+    return _mine.error is not None
+
+
+@ffi.def_extern(onerror=_keep)
+def cv_python_evaluate(handle, m, x, value, gradient, hessian):
+    """Calls evaluate() of the potential."""
+    def array(pointer, *shape):
+        return np.frombuffer(ffi.buffer(pointer, 8 * math.prod(shape))).reshape(shape)
+
+    found = ffi.from_handle(handle).evaluate(array(x, m, 2))
+    array(value, m)[:], array(gradient, m, 2)[:] = found[:2]
+    array(hessian, m, 3)[:] = found[2][:, [0, 0, 1], [0, 1, 1]]
 
 
 def done(code):
     """A code of C, unless it is an error, which is raised."""
-    if code == lib.CV_ESTOPPED:
-        raise _mine.error
+    error, _mine.error = _mine.error, None
+    if error is not None:
+        raise error
     return check(code)
 
 
@@ -340,39 +366,11 @@ SCALES: Dict[str, Callable[[int], Ends]] = {
 
 _HALF = Fraction(1, 2)
 
-# The formulas, curvatures and Lipschitz constants.
-
-# ff: |c''| <= 48, |c'''| = 192.  V'' is diag(c''(x0), c''(x1))/4, of norm
-# 12 at most, and c''(x0 + x1)/2 times [[1, 1], [1, 1]], whose norm is 2; x0 + x1 moves by sqrt 2
-# |dx| at most: 12 + 48, and 48 + 96 2 sqrt 2 < 320.
-_FF = ("-(c(x0) + c(x1))/4 - c(x0 + x1)/2, c(x) = 1 - 24 y^2 + 32 y^3, y the distance from x to "
-       "the nearest integer", 60.0, 320.0)
-
-# poly: V = -4096 f(y0) g(y1), y = x mod 1 - 1/2.  With a = 1/4 - y^2, from 0 to 1/4,
-# f = a^2 (a - 3/16), f'' = -30 a^2 + 33 a/4 - 3/8, f''' = 2 y (60 a - 33/4); g = a^2, g'' = 2 - 12
-# a, g''' = 24 y.  Derivatives 0 to 3 are at most 1/256, 0.022, 3/8, 33/4 and 1/16, 0.1925, 2, 12.
-# The norm of V'' is at most its larger diagonal entry and |V_01|; of the third derivative along a
-# unit vector v the terms with v0^3 and v1^3 make at most the larger one, and v0^2 v1 and v0 v1^2,
-# three times each, are at most 0.385.
-_POLY = ("-4096 a^2 (a - 3/16) b^2, a = 1/4 - (x0 mod 1 - 1/2)^2, b = 1/4 - (x1 mod 1 - 1/2)^2",
-         4096 * (3 / 8 / 16 + 0.022 * 0.1925),
-         4096 * (33 / 4 / 16 + 3 * 0.385 * (3 / 8 * 0.1925 + 0.022 * 2)))
-
-PIECEWISE = {lib.CV_POLY: _POLY, lib.CV_FF: _FF}
-
-# The thesis's three, the real Froeschle map, and the standard map, whose eps is its parameter k.
-# V = 1 at the start of trig, 1/4 at poly's, 27/49 at ff's, 9/16 at froeschle's.
+# The first of the thesis's three, the real Froeschle map, and the standard map, whose eps is its
+# parameter k.  V = 1 at the start of trig, 9/16 at froeschle's.
 trig = Fourier.of(from_terms({(1, 0): (0, -_HALF), (0, 1): (0, -_HALF), (1, 1): (0, -1)}),
                   "trig", (0.8510422, 0.8510422), TRIG)
-poly = Potential("poly", ((2 - math.sqrt(2)) / 4, 0.5), lib.CV_POLY)
-ff = Potential("ff", (2 / 7, 2 / 7), lib.CV_FF)
 froeschle = Fourier.of(from_terms({(1, 0): (-_HALF / 2, 0), (0, 1): (-_HALF / 2, 0),
                                    (1, 1): (-_HALF, 0)}),
                        "froeschle", (0.29021531, 0.29021531), "1")
 standard = Fourier.of(from_terms({(1,): (-1, 0)}), "standard", (0.5,))
-
-STUDIED.update({each.name: each for each in (trig, poly, ff, froeschle, standard)})
-
-
-def _studied(name):
-    return STUDIED[name]

@@ -9,10 +9,11 @@ import numpy as np
 
 from converse.draw.plot import BLUE, DARK, GREY, VERMILLION
 from converse.orbits.pictures import angles, momenta, quality, square
-from converse.orbits.potential import ff, poly, trig
+from converse.orbits.potential import trig
 from converse.orbits.state import vector_words
 
 from . import shared
+from .potentials import ff, poly
 
 SEQUENCE = 60, 110, 199, 309, 720, 1330, 2550, 3770     # periods on the way to shared.TENTH
 TUNNEL = 0.01                           # of the Euclidean length: Bangert's metric in a tunnel

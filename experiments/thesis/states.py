@@ -5,11 +5,12 @@ from pairs import pairs as closest
 
 from converse.draw.plot import BLUE, DARK, GREY, VERMILLION
 from converse.orbits import pictures
-from converse.orbits.potential import ff, poly, trig
+from converse.orbits.potential import trig
 from converse.orbits.state import vector_words
 
 from . import shared
 from .filaments import clumps, filaments
+from .potentials import ff, poly
 
 SMOOTH = 0.005, 0.01, 0.0125, 0.02, 0.025, 0.03      # eps; the thesis: small to large
 PAIRS = 800

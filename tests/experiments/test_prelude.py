@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from thesis.potentials import ff, poly
 from thesis.prelude import prelude
 
 import converse
@@ -10,8 +11,8 @@ from converse.model.map import MuldoonMap
 
 
 @pytest.mark.parametrize("potential, numbers", [
-    (orbits.trig, (0.0385586, 0.0377680, 0.025179)), (orbits.poly, (1 / 24, 1 / 48, 0.010545)),
-    (orbits.ff, (1 / 30, 1 / 30, 0.020962)),
+    (orbits.trig, (0.0385586, 0.0377680, 0.025179)), (poly, (1 / 24, 1 / 48, 0.010545)),
+    (ff, (1 / 30, 1 / 30, 0.020962)),
     (orbits.froeschle, (2 / 49.3480, 2 / 49.3480, 0.025487)),
     (orbits.standard, (2, 2, 4 / 3))], ids=str)
 def test_prelude(potential, numbers):

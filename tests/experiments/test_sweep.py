@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 import sweep
+from thesis.potentials import ff
 
 from converse import orbits
 from converse.storage.files import ConverseError
@@ -51,7 +52,7 @@ def test_torn_anywhere(whole, path):
 
 
 @pytest.mark.parametrize("potential, vectors", [
-    (orbits.ff, VECTORS), (orbits.trig, VECTORS[::-1]), (orbits.trig, VECTORS[:4])])
+    (ff, VECTORS), (orbits.trig, VECTORS[::-1]), (orbits.trig, VECTORS[:4])])
 def test_the_file_of_another_table_is_refused(whole, path, potential, vectors):
     path.write_bytes(whole)
     with pytest.raises(ConverseError, match="^%s: is not the beginning" % path):

@@ -119,8 +119,10 @@ def wrapper(path):
 
 
 def stand_ins():
-    """For the function of Python that the core calls, and nothing here does."""
-    return "int cv_python_interrupts(void) { return 0; }\n"
+    """For the functions of Python that the core calls, and nothing here does."""
+    return ("int cv_python_interrupts(void) { return 0; }\n"
+            "void cv_python_evaluate(void *v, long m, const double (*x)[2], double *value,\n"
+            "    double (*gradient)[2], double (*hessian)[3]) {}\n")
 
 
 def path():

@@ -9,7 +9,8 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from sums import fourier
+from sums import fourier, named
+from thesis.potentials import ff, poly
 
 from converse import orbits
 from converse._native import lib
@@ -18,7 +19,7 @@ from converse.model.potential import FourierSum, from_terms
 from converse.orbits import solver
 from converse.orbits.potential import address
 
-POTENTIALS = [orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard]
+POTENTIALS = [orbits.trig, poly, ff, orbits.froeschle, orbits.standard]
 TWO = POTENTIALS[:4]
 SPIRAL, RESONANT = ((1432, 1897), 2513), ((377, 2330), 3770)
 
@@ -84,8 +85,8 @@ def test_potentials_are_the_thesis_s(potential):
 def test_the_constants():
     """max |V| = 1, attained where V is least; the starts are maxima."""
     for potential, low, at, start in [(orbits.trig, -1, (0.1489578, 0.1489578), 1),
-                                      (orbits.poly, -1, (0.5, 0.5), 0.25),
-                                      (orbits.ff, -1, (0, 0), Fraction(27, 49)),
+                                      (poly, -1, (0.5, 0.5), 0.25),
+                                      (ff, -1, (0, 0), Fraction(27, 49)),
                                       (orbits.froeschle, -1, (0, 0), Fraction(9, 16))]:
         axis = (np.arange(200) + 0.5) / 200
         grid = np.stack(np.meshgrid(axis, axis), -1).reshape(-1, 2)
@@ -239,7 +240,7 @@ def test_a_potential_stays_what_it_is():
 
 def test_a_potential_cannot_be_changed():
     """Proofs believe its bounds."""
-    for mine in (orbits.trig, orbits.poly, fourier(MINE)):
+    for mine in (orbits.trig, poly, fourier(MINE)):
         for name in ("name", "n", "start", "formula", "curvature", "lipschitz", "native", "sum",
                      "scale", "scale_enclosure", "other"):
             with pytest.raises(AttributeError):
@@ -254,7 +255,7 @@ def test_formulas_say_what_v_is():
         words = potential.formula.partition(", ")[0]
         names = {"pi": mpmath.pi, "cos": mpmath.cos, "sin": mpmath.sin, "x": at[0],
                  "s": getattr(potential, "scale", None), **{"x%d" % i: x for i, x in enumerate(at)}}
-        if potential is orbits.poly:
+        if potential is poly:
             for letter, x in zip("ab", at):
                 names[letter] = 0.25 - (x % 1 - 0.5) ** 2
         names["c"] = lambda x: 1 - 24 * abs(x - round(x)) ** 2 + 32 * abs(x - round(x)) ** 3
@@ -265,7 +266,7 @@ def test_formulas_say_what_v_is():
         (Fraction(2, 5), Fraction(-1), Fraction(1, 3)), 2))
     odd = fourier({(3, -2): (0.25, -0.5), (-1, 0): (2, 0)})
     rng = np.random.default_rng(5)
-    for potential in (orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard, odd,
+    for potential in (orbits.trig, poly, ff, orbits.froeschle, orbits.standard, odd,
                       shifted):
         for at in rng.uniform(size=(5, potential.n)):
             assert float(value(potential, at)) == pytest.approx(
@@ -320,8 +321,8 @@ def dense(state):
 
 
 @pytest.mark.parametrize("potential, p, q, eps", [
-    (orbits.trig, (5, 7), 9, 0.03), (orbits.trig, (1, 1), 2, 0.05), (orbits.ff, (1, 0), 1, 0.1),
-    (orbits.poly, (0, 1), 3, 0.03), (orbits.standard, (3,), 8, 0.9),
+    (orbits.trig, (5, 7), 9, 0.03), (orbits.trig, (1, 1), 2, 0.05), (ff, (1, 0), 1, 0.1),
+    (poly, (0, 1), 3, 0.03), (orbits.standard, (3,), 8, 0.9),
     (orbits.standard, (1,), 2, 2.0),
     (orbits.standard, (0,), 1, 1.0), (orbits.froeschle, (13, 8), 40, 0.2)], ids=str)
 def test_the_band_against_a_dense_matrix(potential, p, q, eps):
@@ -418,14 +419,14 @@ CHECK = {       # eps: exponents, action per point less the straight one's
                               0.02: (0.3628, 0.0963, -0.002173733577),
                               0.03: (0.6290, 0.1780, -0.005133715291),
                               0.04: (0.8439, 0.2287, -0.009015999413)},
-    (orbits.ff, SPIRAL): {0.005: (0.0495, 0.0031, -0.000059078),
+    (ff, SPIRAL): {0.005: (0.0495, 0.0031, -0.000059078),
                           0.0075: (0.1026, 0.0048, -0.000133394),
                           0.01: (0.1560, 0.0049, -0.000238778),
                           0.0125: (0.2038, 0.0054, -0.000376696),
                           0.015: (0.2488, 0.0117, -0.000548203),
                           0.02: (0.3330, 0.0214, -0.000994821),
                           0.03: (0.4913, 0.0298, -0.00229929), 0.04: (0.6526, 0.0742, -0.00411219)},
-    (orbits.poly, RESONANT): {0.005: (0.0976, 0.0016, 0.00051729),
+    (poly, RESONANT): {0.005: (0.0976, 0.0016, 0.00051729),
                               0.0075: (0.1231, 0.0038, 0.00071202),
                               0.01: (0.2196, 0.0361, 0.00086109),
                               0.0125: (0.2885, 0.0415, 0.00096544),
@@ -447,13 +448,13 @@ def test_families(which):
     for state, (first, second, action) in zip(family, table.values()):
         assert state.label == "minimum" and np.abs(state.gradient).max() <= 1e-13
         loose = 1e-8 if state.eps < 0.025 else 1e-6 if state.eps < 0.035 else 6e-6
-        if potential is orbits.poly:
+        if potential is poly:
             loose = max(loose, 2e-6)
         if state.eps > 0.005 or potential is not orbits.trig:
             loose = SURE.get(which, loose)
         assert state.action == pytest.approx(action, abs=loose)
         assert state.exponents[0] == pytest.approx(first, rel=0.01, abs=1e-4)
-        far = 0.013 if potential is orbits.poly and state.eps < 0.015 else 0.003
+        far = 0.013 if potential is poly and state.eps < 0.015 else 0.003
         assert state.exponents[1] == pytest.approx(second, abs=far)
         assert (state.undetermined > 0) == (state.eps < 0.009 and potential is orbits.trig)
 
@@ -518,7 +519,7 @@ def test_continuation_knows_no_unit_of_eps():
     for family in families:
         for state, other in zip(family, families[1]):
             assert np.abs(state.u - other.u).max() < 1e-9
-    assert [solver.step_of(getattr(orbits, name)) for name in ("trig", "poly", "ff", "standard")] \
+    assert [solver.step_of(named(name)) for name in ("trig", "poly", "ff", "standard")] \
         == [0.0025, 0.0025, 0.0025, 0.25]
     assert solver.step_of(fourier({(1,): (0, 0)}, "flat")) > 1e200
 

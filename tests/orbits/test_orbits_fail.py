@@ -11,6 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 from sums import fourier
+from thesis.potentials import ff, poly
 
 import converse
 from converse import orbits
@@ -54,8 +55,8 @@ def test_a_minimum_whose_copies_are_none():
     through twice there is a direction down; four times, and a minimum lies tenfold lower."""
     rng = np.random.default_rng(5)
     for _ in range(400):
-        state = orbits.PeriodicOrbit(orbits.poly, (1, 8), 8, 0.0619, rng.uniform(-0.5, 0.5, (8, 2)),
-                             orbits.poly.start).relax()
+        state = orbits.PeriodicOrbit(poly, (1, 8), 8, 0.0619, rng.uniform(-0.5, 0.5, (8, 2)),
+                             poly.start).relax()
         if state.label == "saddle":
             break
     assert state.below(1e-3) == 0                   # all 16 eigenvalues are clearly positive
@@ -63,6 +64,22 @@ def test_a_minimum_whose_copies_are_none():
     assert twice.least < -1e-3 and twice.label == "saddle"
     lower = state.repeat(4).relax()                 # which leaves the saddle
     assert lower.label == "minimum" and lower.action < state.action - 1e-4
+
+
+def test_a_potential_of_python_that_fails():
+    """What it raises ends the search, and the next search begins without it."""
+    class Failing(type(ff)):
+        def evaluate(self, x):
+            if failures:
+                raise failures.pop()
+            return super().evaluate(x)
+
+    failures, state = [], orbits.straight(Failing("failing", ff.start), (2, 3), 5)
+    for error in KeyboardInterrupt, ZeroDivisionError:
+        failures.append(error())
+        with pytest.raises(error):
+            state.relax(0.02)
+        assert (state.relax(0.02).u == orbits.straight(ff, (2, 3), 5).relax(0.02).u).all()
 
 
 def test_soft_directions_that_turn():
@@ -77,7 +94,7 @@ def test_soft_directions_that_turn():
                 (2 - stiff) * np.eye(2) + (stiff - soft) * e[:, :, None] * e[:, None, :])
 
     for soft, stiff, label in ((0.85, 10, "saddle"), (1.6, 10, "minimum"), (1.6, 30, "minimum")):
-        potential = Blocks("blocks", (0.0, 0.0), lib.CV_FF)
+        potential = Blocks("blocks", (0.0, 0.0))
         state = orbits.PeriodicOrbit(potential, (1, 1), 3, 1.0, np.zeros((3, 2)), (0.0, 0.0))
         assert state.below(0) == 0 and state.label == label
         assert (state.repeat(2).least < 0) == (label == "saddle")
@@ -146,8 +163,8 @@ def carried(state, digits):
     (orbits.standard, (3,), 8, 1.2),
     (orbits.standard, (34,), 89, 1.5), (orbits.trig, (1, 1), 1, 0.02),
     (orbits.trig, (1, 1), 2, 0.03),
-    (orbits.trig, (1, 2), 3, 0.03), (orbits.trig, (5, 7), 9, 0.05), (orbits.ff, (12, 16), 21, 0.02),
-    (orbits.poly, (7, 9), 12, 0.03), (orbits.froeschle, (3, 4), 5, 0.04)], ids=str)
+    (orbits.trig, (1, 2), 3, 0.03), (orbits.trig, (5, 7), 9, 0.05), (ff, (12, 16), 21, 0.02),
+    (poly, (7, 9), 12, 0.03), (orbits.froeschle, (3, 4), 5, 0.04)], ids=str)
 def test_exponents_against_many_digits(potential, p, q, eps):
     state = orbits.straight(potential, p, q).relax(eps)
     assert state.label == "minimum"
@@ -160,7 +177,7 @@ def test_exponents_against_many_digits(potential, p, q, eps):
 def test_short_orbits():
     """One, two and three points, where both neighbours of a point are one, or itself."""
     for q in (1, 2, 3):
-        for potential in (orbits.trig, orbits.poly, orbits.ff):
+        for potential in (orbits.trig, poly, ff):
             state = orbits.straight(potential, (1, 1), q).relax(0.02)
             assert state.label == "minimum" and state.undetermined == 0
     fixed = orbits.straight(orbits.standard, (0,), 1).relax(0.5)

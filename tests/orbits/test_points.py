@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from thesis.potentials import ff
 
 from converse import ConverseError, orbits
 from converse.commands import orbits as orbits_cli
@@ -25,12 +26,12 @@ def test_every_double_comes_back(tmp_path):
     rng, path = np.random.default_rng(1), tmp_path / "a.npz"
     u = rng.normal(size=(200, 2)) * 10.0 ** rng.integers(-300, 2, (200, 2))
     u[0] = -0.0, 5e-324
-    state = orbits.PeriodicOrbit(orbits.ff, (3, -800), 200, 1 / 3, u,
+    state = orbits.PeriodicOrbit(ff, (3, -800), 200, 1 / 3, u,
                                  (np.nextafter(0.3, 1), -1e-17))
     state.save(path)
-    assert same(*states_of(path, orbits.ff), state)
+    assert same(*states_of(path, ff), state)
     orbits.Family((state, state.moved(u / 2))).save(path)
-    assert same(states_of(path, orbits.ff)[1], state.moved(u / 2))
+    assert same(states_of(path, ff)[1], state.moved(u / 2))
 
 
 def test_what_others_read(tmp_path):
@@ -75,7 +76,7 @@ def test_a_start_is_of_the_same_map_and_type():
     state = orbits.follow(orbits.trig, (5, 7), 9, [0.02])[0]
     further, = orbits.follow(orbits.trig, (5, 7), 9, [0.03], start=state)
     assert further.label == "minimum" and further.eps == 0.03
-    for start in (state.repeat(2), orbits.follow(orbits.ff, (5, 7), 9, [0.01])[0]):
+    for start in (state.repeat(2), orbits.follow(ff, (5, 7), 9, [0.01])[0]):
         with pytest.raises(ValueError, match="the start is"):
             orbits.follow(orbits.trig, (5, 7), 9, [0.02], start=start)
     with pytest.raises(ValueError, match="a state is expected"):

@@ -17,12 +17,12 @@ import mpmath
 import numpy as np
 import pytest
 from flint import arb, arb_mat, ctx, fmpq
-from sums import fourier
+from sums import fourier, named
 
 from converse import ConverseError, orbits
 from converse.model.balls import precision
 from converse.orbits import enclosure, proved
-from converse.orbits.enclosure import Enclosure
+from converse.orbits.enclosure import Enclosure, law_of
 from converse.orbits.exponents import growth
 from converse.orbits.proved import NotProved, prove
 from converse.orbits.solver import newton
@@ -116,7 +116,7 @@ OWN = {"odd": ODD, "noisy": NOISY}
 
 
 def given(name):
-    return OWN.get(name) or getattr(orbits, name)
+    return OWN.get(name) or named(name)
 
 
 V = {"trig": waves(trig_parts), "froeschle": waves(three(cosine)), "ff": waves(three(spline)),
@@ -284,7 +284,7 @@ def test_long_types():
     for name, p, q, eps, digits in (("trig", (65, 86), 114, 0.0125, 90),
                                     ("ff", (37, 49), 65, 0.02, 90),
                                     ("poly", (10, 62), 100, 0.01, 110)):
-        orbit = prove(orbits.follow(getattr(orbits, name), p, q, [eps])[0])
+        orbit = prove(orbits.follow(named(name), p, q, [eps])[0])
         contains(orbit, exact_points(orbit.state, orbit.displacements), digits)
     orbit = prove(orbits.follow(orbits.trig, (1432, 1897), 2513, [0.0125])[0])
     assert orbit.radius < Fraction(1, 10**25) and 1.4e-6 < orbit.least < 1.6e-6
@@ -312,12 +312,12 @@ def test_more_digits():
 
 
 # The mirror image of what has its signs the other way: so what is cut off x makes it look steeper.
-COMPLEX = orbits.PeriodicOrbit(orbits.poly, (-1, -4), 4, 0.2547, [
+COMPLEX = orbits.PeriodicOrbit(named("poly"), (-1, -4), 4, 0.2547, [
     [0.13872656450355808, 0.23636730472985026], [0.11127343549644189, 0.2363673047298503],
     [0.1323984999421461, 0.0435489119315375], [0.11760150005785408, 0.0435489119315374]], (0, 0))
 
 
-TURNED = orbits.PeriodicOrbit(orbits.poly, (1, 0), 6, 0.1336, [
+TURNED = orbits.PeriodicOrbit(named("poly"), (1, 0), 6, 0.1336, [
     [0.1115, -0.3125], [0.0165, -0.236], [0.0461, -0.0711], [0.1206, -0.0711], [0.1502, -0.236],
     [0.0552, -0.3125]], (0, 0))
 
@@ -352,7 +352,7 @@ def test_saddles():
               "standard": (0.0,)}
     for name, p, q in (("trig", (0, 0), 1), ("trig", (1, 1), 2), ("poly", (0, 1), 1),
                        ("ff", (1, 0), 2), ("standard", (1,), 3), ("standard", (1,), 1)):
-        potential = getattr(orbits, name)
+        potential = named(name)
         state, _ = newton(orbits.straight(potential, p, q, lowest[name]), 0.03)
         assert state.least < -1e-6
         for copies in (1, 2):
@@ -379,7 +379,7 @@ def test_a_saddle_is_proved_to_be_nothing_else(p, q, k):
 @pytest.mark.parametrize("name, p, origin",
                          [("standard", (0,), (0.0,)), ("ff", (0, 0), (0.0, 0.0))])
 def test_a_saddle_whose_gradient_is_exactly_zero(name, p, origin):
-    state = replace(orbits.straight(getattr(orbits, name), p, 1, origin), eps=1e-10)
+    state = replace(orbits.straight(named(name), p, 1, origin), eps=1e-10)
     assert state.label == "saddle" and not state.gradient.any()
     with pytest.raises(NotProved, match="the state is a saddle"):
         prove(state)
@@ -387,7 +387,7 @@ def test_a_saddle_whose_gradient_is_exactly_zero(name, p, origin):
 
 def test_minimum_that_copies_lose():
     """Its own Hessian is positive definite, but not that of two copies."""
-    state = orbits.PeriodicOrbit(orbits.poly, (6, 0), 7, 0.0829, [
+    state = orbits.PeriodicOrbit(named("poly"), (6, 0), 7, 0.0829, [
         [0.09001452930093247, 0.22129605034580752], [0.05284261355621051, 0.22129605034580754],
         [0.10321553783195166, 0.17508214209550613], [0.10488570850555318, 0.0745211942219912],
         [0.07142857142857154, 0.03396091525211244], [0.0379714343515899, 0.07452119422199109],
@@ -446,7 +446,7 @@ def test_flat():
 @pytest.mark.parametrize("name, p, q", [("standard", (317,), 512), ("trig", (5, 7), 9)])
 def test_ctrl_c_leaves_nothing_behind(name, p, q, monkeypatch):
     """Whatever round through the points it strikes in, all is as if nothing had been."""
-    state = orbits.follow(getattr(orbits, name), p, q, [1.5 if len(p) == 1 else 0.03])[0]
+    state = orbits.follow(named(name), p, q, [1.5 if len(p) == 1 else 0.03])[0]
     asked, last = 0, None
 
     def struck(function):
@@ -544,13 +544,12 @@ def test_potentials():
     rng = rng_for("potentials")
     for name, true in V.items():
         ours = given(name)
-        state = orbits.straight(ours, (0,) * ours.n, 1)
         for _ in range(40 * TORTURE):
             base = [Fraction(rng.choice([rng.randrange(97), 0, 97, 48]), 97) for _ in range(ours.n)]
             u = [rng.choice([rng.uniform(-1, 1), 0.0, 0.5, 0.25, -1e-30]) for _ in range(ours.n)]
             with precision():
                 ctx.prec = 200
-                local = Enclosure(state, Fraction(1)).law(ours, 60)
+                local = law_of(ours, 60)
                 found = local([fmpq(x.numerator, x.denominator) for x in base],
                               [arb(x) for x in u])
                 found = [(enclosure.lower(x), enclosure.upper(x)) for x in found]

@@ -6,12 +6,13 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from thesis.potentials import ff, poly
 
 from converse import SymplecticMap, orbits
 from converse.orbits.solver import newton
 
 LOWEST = {"trig": (0.1489578,) * 2, "poly": (0.5, 0.5), "ff": (0.0, 0.0), "standard": (0.0,)}
-POTENTIALS = (orbits.trig, orbits.poly, orbits.ff, orbits.standard)
+POTENTIALS = (orbits.trig, poly, ff, orbits.standard)
 
 
 @pytest.mark.parametrize("potential", POTENTIALS, ids=str)
@@ -104,7 +105,7 @@ def stationary():
             (orbits.standard, (34,), 89, 0.9716), (orbits.standard, (34,), 89, 0.5),
             (orbits.trig, (1, 1), 1, 0.02), (orbits.trig, (5, 7), 9, 0.01),
             (orbits.trig, (49, 65), 86, 0.0125), (orbits.trig, (49, 65), 86, 0.04),
-            (orbits.ff, (12, 16), 21, 0.01), (orbits.poly, (7, 9), 12, 0.01)):
+            (ff, (12, 16), 21, 0.01), (poly, (7, 9), 12, 0.01)):
         starts = [potential.start, LOWEST[potential.name], *rng.random((2, potential.n))]
         for start in starts:
             state = orbits.straight(potential, p, q, tuple(start))
