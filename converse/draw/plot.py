@@ -4,7 +4,6 @@ Every picture is drawn by matplotlib (the extra "plot"), whose backend and setti
 """
 
 import io
-import math
 import os
 import sys
 import textwrap
@@ -20,17 +19,14 @@ from .style import (BLUE, CHART, DARK, GREEN, GREY, ORANGE, PURPLE, SALT, SKY, S
                     VERMILLION)
 
 FORMATS = "svg", "png", "pdf"           # of all pictures, as their names end
-COLOURS = {"P": "0.35", "S": "0.85", "a": SKY, "?": "1.0", "U": "#f4b183"}
-EDGES = {"P": "0.1", "S": "0.6", "a": BLUE, "?": "0.6", "U": VERMILLION}
+COLOURS = {"P": "0.35", "S": "0.85", "a": ORANGE, "?": "1.0", "U": "#f4b183"}
+EDGES = {"P": "0.1", "S": "0.6", "a": ORANGE, "?": "0.6", "U": VERMILLION}
 WIDTHS = {"U": 0.8}                     # of the edges, in points
 LAYERS = "SPa?U"                        # from the bottom: what is not proved is never hidden
-RASTER = 2000                           # with more prisms than this the depth of the cuts is drawn
-PIXELS = 1200
+MANY = 2000                             # with more prisms than this the depth of the cuts is drawn
 DPI = 200                               # of a file
 SINGLE = Fraction(1, 10 ** 200)         # half-widths below are drawn as 0: matplotlib fails on them
 DEPTHS = "#9ecae1", "#4292c6", "#08306b"   # of the cuts
-RASTER_COLOURS = {"S": (217, 217, 217, 255), "a": (230, 159, 0, 255),
-                  "?": (255, 255, 255, 255), "U": (213, 94, 0, 255)}
 LETTERS = 17                            # of a caption, in an inch
 PROGRAM = "converse " + __version__         # by which files.check_output knows its pictures
 METADATA = {"svg": {"Creator": PROGRAM, "Date": None}, "png": {"Software": PROGRAM},
@@ -165,10 +161,11 @@ def page(proof, caption=True, ax=None):
     if axes.get_legend_handles_labels()[1]:
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=5, ncol=3,
                     fontsize=8, frameon=False)          # below the labels of the axes
-    for image in axes.images[:1]:
-        fig.colorbar(image, ax=axes, shrink=0.6, ticks=MaxNLocator(integer=True),
-                     label="proved (%d): cuts of the smallest prism along v0 and v1"
-                     % captions.counts(proof).get("P", 0))
+    for surface in axes.collections:
+        if surface.get_array() is not None:
+            fig.colorbar(surface, ax=axes, shrink=0.6, ticks=MaxNLocator(integer=True),
+                         label="proved (%d): cuts of the smallest prism along v0 and v1"
+                         % captions.counts(proof)["P"])
     return fig
 
 
@@ -178,18 +175,18 @@ def draw(proof, axes):
     check()
     (left, width), (bottom, height) = (_axis(proof.problem, axes, k) for k in range(2))
     count = captions.counts(proof)
-    if sum(count.values()) <= RASTER:
-        paths, colours = _paths(captions.nodes(proof)), COLOURS
-    else:
-        _raster(axes, captions.nodes(proof), (left, left + width, bottom, bottom + height))
-        paths = {}
-        colours = {kind: [x / 255 for x in colour] for kind, colour in RASTER_COLOURS.items()}
-        count.pop("P", None)            # whose colours a colour bar explains
+    paths, depths = _paths(captions.nodes(proof))
     for kind, number in count.items():
-        rectangles(axes, [(left + width * x, bottom + height * y) for x, y in paths.get(kind, ())],
-               facecolor=colours[kind], edgecolor=EDGES[kind], linewidth=WIDTHS.get(kind, 0.3),
-               zorder=1 + LAYERS.index(kind) / 10,
-               label="%s (%d)" % (captions.KIND_NAMES[kind], number))
+        corners = [(left + width * x, bottom + height * y) for x, y in paths.get(kind, ())]
+        style = {"facecolor": COLOURS[kind], "zorder": 1 + LAYERS.index(kind) / 10,
+                 "label": "%s (%d)" % (captions.KIND_NAMES[kind], number)}
+        if sum(count.values()) <= MANY:
+            rectangles(axes, corners, edgecolor=EDGES[kind], linewidth=WIDTHS.get(kind, 0.3),
+                       **style)
+        elif kind == "P":               # whose colours a colour bar explains
+            _surface(axes, corners, depths, zorder=style["zorder"])
+        else:
+            _surface(axes, corners, **style)
     star = captions.star(proof)
     if star:
         axes.plot(left + width * star[0], bottom + height * star[1], "o", linestyle="none",
@@ -240,37 +237,27 @@ def _spread(kind, index, cuts):
 
 
 def _paths(text):
-    """The corners of the prisms, by kind."""
-    paths = {}
+    """The corners of the prisms, by kind, and the cuts of those that are proved."""
+    paths, depths = {}, []
     for kind, ((i, j, *_), (k, l, *_)) in tree.cells(text):
         (x0, x1), (y0, y1) = _spread(kind, i, k), _spread(kind, j, l)
         paths.setdefault(kind, []).extend([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)])
-    return paths
+        if kind == "P":
+            depths.append(k + l)
+    return paths, depths
 
 
-def _raster(axes, text, extent):
-    """Draws the number of cuts of the smallest prism at each place; where parameters were cut a
-    place lies in several prisms."""
+def _surface(axes, corners, depths=None, **style):
+    """Very many rectangles without edges; of those with depths, a colour for each, and the deepest
+    on top: where parameters were cut a place lies in several prisms."""
     import numpy
+    from matplotlib.collections import PolyCollection
     from matplotlib.colors import LinearSegmentedColormap
 
-    depth = numpy.full((PIXELS, PIXELS), -1, numpy.int16)
-    others = {kind: numpy.zeros((PIXELS, PIXELS), bool) for kind in RASTER_COLOURS}
-    for kind, ((i, j, *_), (k, l, *_)) in tree.cells(text):
-        if kind == "P":
-            part = depth[j * PIXELS >> l:-(-(j + 1) * PIXELS >> l),
-                         i * PIXELS >> k:-(-(i + 1) * PIXELS >> k)]
-            numpy.maximum(part, k + l, out=part)
-        else:
-            (x0, x1), (y0, y1) = (
-                (math.floor(low * PIXELS), math.ceil(high * PIXELS))
-                for low, high in (_spread(kind, i, k), _spread(kind, j, l)))
-            others[kind][y0:y1, x0:x1] = True
-    others["S"] &= depth < 0
-    above = numpy.zeros((PIXELS, PIXELS, 4), numpy.uint8)
-    for kind in LAYERS:
-        if kind in others:
-            above[others[kind]] = RASTER_COLOURS[kind]
-    depths = LinearSegmentedColormap.from_list("depths", DEPTHS)
-    for image, options in ((numpy.ma.masked_less(depth, 0), {"cmap": depths}), (above, {})):
-        axes.imshow(image, origin="lower", extent=extent, interpolation="nearest", **options)
+    shapes = numpy.reshape(corners, (-1, 5, 2))
+    if depths is not None:
+        order = numpy.argsort(depths, kind="stable")
+        shapes, style["array"] = shapes[order], numpy.array(depths)[order]
+        style["cmap"] = LinearSegmentedColormap.from_list("depths", DEPTHS)
+    axes.add_collection(PolyCollection(shapes, linewidths=0, antialiaseds=False, rasterized=True,
+                                       **style))

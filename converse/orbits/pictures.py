@@ -54,22 +54,16 @@ def exponent_text(state, exponent, digits):
 
 def figure(one, ax=None):
     """A state, or the state nearest to a proved orbit: as a Figure, or drawn into ax."""
-    state = drawn(one)
-    n = state.potential.n
     if ax is None:
         return plot.new(WIDTH, HEIGHT, lambda page: rows(page, [one]) and None)
     plot.check()
-    axes = np.ravel(ax)
+    axes, n = np.ravel(ax), drawn(one).potential.n
     if not 1 <= len(axes) <= n:
         raise ValueError("a state of %s is drawn into %s of matplotlib, not into %d" % (
             *(("two angles", "Axes, or into a pair of Axes") if n == 2 else
               ("one angle", "Axes")), len(axes)))
-    if n == 1:
-        plane(axes[0], state)
-    else:
-        angles(axes[0], state)
-        if len(axes) == 2:
-            momenta(axes[1], state, *square(state))
+    for axis, draw in zip(axes, (angles, momenta)):
+        draw(axis, drawn(one))
     return ax
 
 
@@ -79,23 +73,22 @@ def dots(state):
             "markeredgewidth": 0, "rasterized": True, "color": DARK}
 
 
-def plane(ax, state):
-    """A state of one angle: x and p."""
-    ax.plot(state.x, state.momenta, **dots(state))
-    x, p = state.potential.letters
-    ax.set(xlim=(0, state.potential.period), xlabel="$%s$" % x, ylabel="$%s$" % p)
-
-
 def angles(ax, state):
-    """The angles of a state of two."""
-    ax.plot(*state.x.T, **dots(state))
-    whole, x = (0, state.potential.period), state.potential.letters[0]
-    ax.set(xlim=whole, ylim=whole, aspect="equal", xlabel="$%s_0$" % x, ylabel="$%s_1$" % x)
+    """The angles of a state of two; of one, x and p."""
+    whole, (x, p) = (0, state.potential.period), state.potential.letters
+    if state.potential.n == 1:
+        ax.plot(state.x, state.momenta, **dots(state))
+        ax.set(xlim=whole, xlabel="$%s$" % x, ylabel="$%s$" % p)
+    else:
+        ax.plot(*state.x.T, **dots(state))
+        ax.set(xlim=whole, ylim=whole, aspect="equal", xlabel="$%s_0$" % x, ylabel="$%s_1$" % x)
 
 
-def momenta(ax, state, middle, half):
+def momenta(ax, state, middle=None, half=0.0):
     """The momenta of a state of two angles, and a cross at the rotation vector, in a square about
-    middle."""
+    middle; by default in one that the momenta lie in."""
+    if middle is None:
+        middle, half = square(state)
     p = state.potential.letters[1]
     ax.plot(*state.momenta.T, **dots(state))
     ax.plot(*state.potential.period * state.rotation, "+", color=VERMILLION, markersize=7)
@@ -124,11 +117,9 @@ def rows(page, shown, more=None):
         letter = "abcdefghijklmnopqrstuvwxyz"[number % 26] * (1 + number // 26)
         lines = ["ε = %r, %s: %s" % (state.eps, state.type_text, kind(one)),
                  "%s; %s" % (exponents_words(state), quality(state))]
-        if potential.n == 1:
-            plane(panels[0], state)
-        else:
-            angles(panels[0], state)
-            momenta(panels[1], state, *square(state))
+        angles(panels[0], state)
+        if potential.n == 2:
+            momenta(panels[1], state)
             centre = potential.period * state.rotation
             away = np.sqrt(((state.momenta - centre) ** 2).sum(1)).max()
             if len(shown) > 1:
@@ -166,15 +157,7 @@ def family_plot(family, ax=None):
     """The exponents of a family against eps: as a Figure, or drawn into ax."""
     if not len(family):
         raise ValueError("a family without states cannot be drawn")
-    plot.check()
-    if ax is not None:
-        return _against_eps(ax, family)
-
-    def fill(page):
-        first, ax = family[0], _against_eps(page.subplots(), family)
-        ax.set_title("%s, %s" % (first.potential.name, first.type_text))
-
-    return plot.new(5.0, 3.4, fill)
+    return plot.single((5.0, 3.4), lambda axes: _against_eps(axes, family), ax=ax)
 
 
 def _against_eps(ax, family):
@@ -183,6 +166,6 @@ def _against_eps(ax, family):
         ax.plot(eps, part, "o-", markersize=3, color=colour)
         ax.plot(eps[~minima], part[~minima], "o", markersize=3, color=colour,
                 markerfacecolor="white")
-    ax.set(xlabel="ε", ylabel="Lyapunov exponents")
+    ax.set(xlabel="ε", ylabel="Lyapunov exponents",
+           title="%s, %s" % (family[0].potential.name, family[0].type_text))
     ax.xaxis.get_major_locator().set_params(nbins=6)
-    return ax

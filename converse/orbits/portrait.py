@@ -41,13 +41,7 @@ def portrait(system, eps, x, p, steps, ax, style):
     plot.check()
     columns = [each.reshape(abs(steps) + 1, orbits, system.dimension)[:, :, 0] % system.period
                for each in system.orbit(x, p, steps, eps)]
-    if ax is not None:
-        return _draw(ax, system, columns, style)
-
-    def fill(figure):
-        _draw(figure.subplots(), system, columns, style)
-
-    return plot.new(4.4, 4.4, fill)
+    return plot.single((4.4, 4.4), lambda axes: _draw(axes, system, columns, style), ax=ax)
 
 
 def _draw(ax, system, columns, style):
@@ -64,4 +58,3 @@ def _draw(ax, system, columns, style):
             axis.set_ticks([0, math.pi, 2 * math.pi], ["$0$", r"$\pi$", r"$2\pi$"])
     if system.dimension > 1:
         ax.set_title("all points, projected to ($%s$, $%s$)" % tuple(plane))
-    return ax

@@ -37,10 +37,10 @@ def drawn(proof, dpi=50):
             for y in range(0, len(pixels), 16 * dpi)]
 
 
-@pytest.fixture(params=["outlines", "raster"])
+@pytest.fixture(params=["outlines", "surfaces"])
 def shown(request, monkeypatch):
     """A function from proofs to pixels, for each way to draw."""
-    monkeypatch.setattr(plot, "RASTER", 0 if request.param == "raster" else 10 ** 9)
+    monkeypatch.setattr(plot, "MANY", 0 if request.param == "surfaces" else 10 ** 9)
     return drawn
 
 
@@ -205,9 +205,9 @@ def test_what_is_said(made_up):
 
 
 def test_the_colour_bar_counts_the_proved(made_up, monkeypatch):
-    """The legend of a raster has the other kinds, or is absent."""
+    """The legend of surfaces has the other kinds, or is absent."""
     pytest.importorskip("matplotlib")
-    monkeypatch.setattr(plot, "RASTER", 0)
+    monkeypatch.setattr(plot, "MANY", 0)
     axes, bar = made_up("01PS1U").plot().axes
     assert bar.get_ylabel().startswith("proved (1):")
     assert not any("proved" in text.get_text() for text in axes.get_legend().get_texts())
