@@ -4,15 +4,16 @@ Rounds that look for tori (some.py) and rounds that exclude them (none.py) chang
 has cost less is next.  A cell of the line that is not excluded is halved.  If its middle was
 excluded, only x* has to change; if not, there may be a torus, and with each halving the tries may
 cost twice the points.  Cells next to excluded ones come first.  The tasks of a round are chosen
-before any of them is done, so the result does not depend on how many are done at a time.
+before any of them is done, and their results are taken in order, as long as the points last.  So
+what is found does not depend on how many are done at a time.
 """
 
 import itertools
 from fractions import Fraction
-from typing import Any, Dict, List, NamedTuple, Tuple
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
 from . import none, some
-from .value import POINTS_A_SECOND, Diagram
+from .value import POINTS_A_SECOND, Diagram, Member
 
 CELLS = 24                              # of the range, at first
 FINEST = 1 << 14                        # A cell with a torus is left out if so many fill the range.
@@ -66,29 +67,38 @@ def search(diagram: Diagram, filling, points: int, tell) -> None:
     filling : prover.workers.Filling
         Its workers do the tasks.
     points
-        The search ends with the round in which the diagram has so many points.
+        The search ends when the diagram has so many points.
     tell
         tell(text) is called with a line about each proof, as soon as it is found.
     """
     line = _Line(diagram)
     while diagram.points < points and not filling.late:
-        tasks, results = line.round(points), {}       # type: List[Any], Dict[int, Any]
+        tasks, keys = line.round(points), itertools.count()
+        results, taken = {}, []         # type: Dict[int, Any], List[int]
         if not tasks:
             break
 
+        def next_task():
+            key, left = next(keys), points - diagram.points
+            return (key, *line.call(tasks[key], left)) if key < len(tasks) and left > 0 else None
+
+        def record():
+            key = len(taken)
+            taken.append(key)
+            return line.take(tasks[key], results.get(key), points - diagram.points)
+
         def take(key, outcome):
             results[key] = outcome
-            found = outcome and (outcome.torus if isinstance(outcome, some.Outcome) else
-                                 outcome.proof)
-            if found:
-                tell(diagram.sentence(diagram.add(found)))
+            while results.get(len(taken)):
+                member = record()
+                if member:
+                    tell(diagram.sentence(member))
 
-        queue = iter([(key, *line.call(task)) for key, task in enumerate(tasks)])
         try:
-            filling.work(lambda: next(queue, None), take)
+            filling.work(next_task, take)
         finally:                        # also of a round that is broken off
-            for key, task in enumerate(tasks):
-                line.take(task, results.get(key))
+            while len(taken) < len(tasks):
+                record()
             diagram.search = line.lines()
 
 
@@ -128,35 +138,42 @@ class _Line:
         """The tasks that are done next.  Tries at tori take at most half of the points of the
         search."""
         def tori():
-            return self.tori.round((points / 2 - self.spent[1]) / POINTS_A_SECOND)
+            left = min(points / 2 - self.spent[1], points - self.diagram.points)
+            return self.tori.round(left / POINTS_A_SECOND)
 
         first, second = (tori, self._cells) if self.spent[1] < self.spent[0] else (
             self._cells, tori)
         return first() or second()
 
-    def call(self, task) -> Tuple[Any, ...]:
-        """The function that does a task, and its arguments."""
+    def call(self, task, most: int) -> Tuple[Any, ...]:
+        """The function that does a task within so many points, and its arguments."""
         if isinstance(task, some.Task):
             return some.attempt, self.diagram.over((task.ends,)), task
-        over, middle = (self.diagram.over((ends,)) for ends in (
-            (task.low, task.high), (task.middle, task.middle)))
-        return none.exclude, over, middle, self._near(task), task.points
+        family = self.diagram.over(((task.low, task.high),))
+        return none.exclude, family, self._near(task), task.points, most
 
-    def take(self, task, outcome) -> None:
-        """Records what became of a task; None: it was not done."""
+    def take(self, task, outcome, most: int) -> Optional[Member]:
+        """Records what became of a task, and returns what it adds to the diagram.  None: it was not
+        done.  A task that took more points than `most` is to be done anew."""
         if outcome is not None:
-            self.spent[isinstance(task, some.Task)] += outcome.points
+            spent = min(outcome.points, most)
+            self.diagram.points += spent
+            self.spent[isinstance(task, some.Task)] += spent
+            if outcome.points > most:
+                outcome = None
+        proof = outcome and (outcome.torus if isinstance(task, some.Task) else outcome.proof)
+        member = self.diagram.add(proof) if proof else None
         if isinstance(task, some.Task):
             self.tori.take(task, outcome)
         elif outcome is None:
             self.cells.append(task)
         else:
-            self.diagram.points += outcome.points
             if outcome.xstars:
                 self.hints.append((task.middle, outcome.xstars))
             if not outcome.proof:
                 self.cells += task.halves(not outcome.xstars) if task.weight else \
                     self._divided(task)
+        return member
 
     def _cells(self):
         """The cells that are tried next, the widest first, from the top down; one that touches a

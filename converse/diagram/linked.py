@@ -5,6 +5,7 @@ of successors of an x* that excludes it cheaply (prover/links.py), perhaps of th
 region moves with the parameters, so a range need not be cut into many.  The x* are compared at the
 ends of the range; nothing rests on the choice."""
 
+import math
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
@@ -44,6 +45,8 @@ class Growth:
     ----------
     stop
         stop() tells whether to end soon.
+    most
+        How many points may be computed.
 
     Attributes
     ----------
@@ -52,11 +55,11 @@ class Growth:
     spent
         The points of the last tree.
     stopped
-        Whether a tree was broken off because stop() returned True.
+        Whether a tree was broken off because stop() returned True, or for more points than `most`.
     """
 
-    def __init__(self, stop: Callable[[], bool]) -> None:
-        self.stop = stop
+    def __init__(self, stop: Callable[[], bool], most: float = math.inf) -> None:
+        self.stop, self.most = stop, most
         self.points = self.spent = 0
         self.stopped = False
 
@@ -76,13 +79,17 @@ class Growth:
         """
         search = native.Search(native.Task(
             problem, Settings("loewner", cuts, stubborn=stubborn), xstar, longest))
-        self.stopped = self.stopped or not (search.work(0, self.stop) and search.work(
-            1, self.stop, points=points)) or self.stop()
+        self.stopped = self.stopped or self.points > self.most or not (
+            search.work(0, self.stop) and search.work(
+                1, self.stop, points=min(points, self.most - self.points))) or self.stop()
         if self.stopped:
             return None
         grown = search.view(True)
         self.spent = int(grown.points)
         self.points += self.spent + TREE_POINTS
+        self.stopped = self.points > self.most
+        if self.stopped:
+            return None
         if grown.cells or grown.counts.undecided and not stubborn:
             return None
         return grown, search
@@ -174,6 +181,8 @@ class _Linking:
         """The _Choice of an x*; None: it takes more points."""
         spent, found = 0, []
         for end, box in zip(self.ends, boxes):
+            if self.growth.stopped:
+                return None
             self.growth.points += LINK_POINTS * (xstar not in end.links)
             problem = end.region(box, self.first, xstar)
             grown = self.growth.grow(problem, xstar, DEPTH, points - spent)

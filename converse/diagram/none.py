@@ -4,9 +4,10 @@ Near the last torus only some x* exclude all successors, and which they are chan
 parameters within a percent.  So a cell is first tried at its middle.  Over each x* of a coarse
 scan of the torus a tree of few cuts is grown; the x* that leaves the fewest prisms is improved by
 steps; and a cell is given the x* that excludes its middle at the least cost.  Where one x* does not
-do, or not for the whole cell, what it leaves is linked to others (linked.py).  A scan costs as much
-as many tries, so first come the x* of neighbours.  All costs are points of orbits, so the outcome
-depends on the cell and on the x* that are suggested, not on the machine.
+do for the middle, or only for a small part of the cell about it, what it leaves is linked to others
+(linked.py).  A scan costs as much as many tries, so first come the x* of neighbours.  All costs are
+points of orbits, so the outcome depends on the cell and on the x* that are suggested, not on the
+machine.
 """
 
 import itertools
@@ -31,6 +32,7 @@ LEAST_STEP = {1: 0.003, 2: 0.02}        # radians, by which x* is moved
 BASINS, CHOICES = 3, 6                  # x* that are improved; that are then tried to the end
 HINTS = 3                               # x* of neighbours that are tried first, each alone
 RANGE_FACTOR = 4                        # points of a range over one x*, by those of its middle
+NARROW = Fraction(1, 8)                 # If one x* excludes so much of a cell, the cell is halved.
 SCALE = 10 ** 4                         # x* has four decimals
 
 
@@ -53,48 +55,60 @@ class Outcome(NamedTuple):
     xstars: Tuple[Point, ...]
 
 
-def exclude(family: SymplecticMap, middle: SymplecticMap, hints: Sequence[Point], points: int,
+def exclude(family: SymplecticMap, hints: Sequence[Point], points: int, most: float = math.inf,
             stop: Callable[[], bool] = bool) -> Optional[Outcome]:
     """Tries to prove that no map of a family has invariant tori.
 
     Parameters
     ----------
-    family, middle
-        The family, and the map in its middle.
+    family
+        The family, whose first parameter has a range.
     hints
         x* that excluded maps near by, the nearest first.
     points
         The most points of orbits of a try at the middle.
+    most
+        The most points of all.
     stop
         stop() tells whether to end soon.
 
     Returns
     -------
     Outcome
-        None if it was stopped.
+        None if it was stopped.  It tells of more points than `most` if more are needed.
     """
-    search, problem = _Search(Problem.of(middle), points, stop), Problem.of(family)
+    def part(share):
+        """The problem over so much of the range, about its middle."""
+        low, high = family.ranges[0]
+        ends = [(low + high + sign * share * (high - low)) / 2 for sign in (-1, 1)]
+        return Problem.of(family.at(**{family.names[0]: ends}))
+
+    search, problem = _Search(part(0), points, stop, most), part(1)
     for xstars, alone in search.candidates(hints):
         costs, proof = search.cheapest(xstars), None
         used = [xstar for _, xstar in costs[:1]]
         if costs:
-            proof = search.proof(problem, used[0], RANGE_FACTOR * max(points, costs[0][0]))
-        elif not alone:
+            dearest = RANGE_FACTOR * max(points, costs[0][0])
+            proof = search.proof(problem, used[0], dearest)
+            if not proof and search.proof(part(NARROW), used[0], dearest):
+                return Outcome(search.points, None, tuple(used))
+        elif not (alone or search.stopped):
             found, used = linked(search, search.problem, [*xstars[:1], *hints], points)
             used = used if found else []
         if used:
             if not proof:
                 proof, used = linked(search, problem, [*used, *hints], points)
             return Outcome(search.points, proof, tuple(used))
-    return None if search.stopped else Outcome(search.points, None, ())
+    stopped = search.stopped and search.points <= most
+    return None if stopped else Outcome(search.points, None, ())
 
 
 class _Search(Growth):
     """The choice of x* for one map."""
 
-    def __init__(self, problem, most, stop):
-        super().__init__(stop)
-        self.problem, self.most = problem, most
+    def __init__(self, problem, dearest, stop, most):
+        super().__init__(stop, most)
+        self.problem, self.dearest = problem, dearest
         self.q = next((k for k, _ in problem.present), (1, 0))
         self.axes = 1 if problem.is_flat else 2         # V depends on q.y alone, or on both angles
 
@@ -131,7 +145,7 @@ class _Search(Growth):
         found: List[Tuple[int, Point]] = []
         for xstar in candidates:
             before = ready(Proof((Tree(self.problem, xstar),), Settings("loewner", DEPTH)))
-            if self.grow(before.problem, xstar, DEPTH, min([self.most, *(
+            if self.grow(before.problem, xstar, DEPTH, min([self.dearest, *(
                     cost for cost, _ in found)])):
                 found.append((self.spent, xstar))
         return sorted(found)

@@ -25,10 +25,10 @@ from ..tori.torus import family as potential_of
 from .value import POINTS_A_SECOND, Diagram, Seen
 
 # By the number of angles.  First GRID parts of the range are looked at; then gaps between values,
-# down to 1/PARTS of what is open, between tori SPARSE times less, and where a torus is seen at one
-# end only down to 1/FINEST.
+# down to 1/PARTS of what is open, between tori SPARSE times less.  Where a torus is seen at one end
+# only, they are looked at down to 1/FINEST, and to SHARE of the way to a proved torus.
 GRID, PARTS, FINEST = {1: 16, 2: 8}, {1: 1 << 8, 2: 1 << 5}, {1: 1 << 15, 2: 1 << 9}
-SPARSE = 8
+SPARSE, SHARE = 8, Fraction(1, 8)
 SEEN = 3e-8                             # turns: an orbit that changes less is taken for a torus
 EFFORTS = {1: (5, 20, 80), 2: (128, 512)}       # seconds that a try may take, about
 LEAST = {1: 2, 2: 20}                   # No try begins with less.
@@ -139,7 +139,6 @@ class Runs:
         """Records what became of a task; None: it was not done."""
         if outcome is None:
             return
-        self.diagram.points += outcome.points
         if task.effort:
             self.tried[task.value] = task.effort
         else:
@@ -150,17 +149,22 @@ class Runs:
 
     def _looks(self):
         """The middles of the widest gaps between known values: where a torus is seen at one end,
-        and elsewhere, where gaps between tori that are seen are of less use."""
+        no narrower than SHARE of the way from there to a proved torus; and elsewhere, where gaps
+        between tori that are seen are of less use."""
         ends, open_parts = self._values(), self.diagram.open
         if not open_parts:
             return []
         part = (open_parts[-1][1] - open_parts[0][0]) / PARTS[self.n]
         gaps: Tuple[List[Any], List[Any]] = ([], [])
         for a, b in zip(ends, ends[1:]):
-            seen = sum(bool(self.looks.get(end)) for end in (a, b))
-            least, middle = (part, self.grain, SPARSE * part)[seen], nice((a + b) / 2, self.grain)
+            seen, middle = [end for end in (a, b) if self.looks.get(end)], nice(
+                (a + b) / 2, self.grain)
+            least = SPARSE * part if seen else part
+            if len(seen) == 1:
+                least = max(self.grain, SHARE * min(
+                    (abs(value - seen[0]) for value in self._proved()), default=self.high - self.low))
             if b - a > least and not self._is_known(middle):
-                gaps[seen == 1].append(((a - b) / least, middle))
+                gaps[len(seen) == 1].append(((a - b) / least, middle))
         return [Task(middle) for each, most in zip(gaps, (LOOKS, BORDERS))
                 for _, middle in sorted(each)[:most]]
 

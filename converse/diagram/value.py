@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..tori.rotation import Rotation
 
 FIRST_LINE = "converse diagram 1"
-POINTS_A_SECOND = 3 * 10 ** 6           # of orbits, about: what a second of the budget stands for
+POINTS_A_SECOND = 4 * 10 ** 6           # of orbits, about: what a second of the budget stands for
 Value = Any                             # of one parameter; of two parameters, of each one
 Box = Tuple[Ends, ...]                  # for each parameter (low, high)
 Side = Tuple[Fraction, Tuple[Fraction, ...], Tuple[int, ...]]       # value, x in turns, n

@@ -16,8 +16,7 @@ def cosines(**ranges):
 
 
 def excluded(low, high, hints=(), points=20000):
-    return none.exclude(cosines(K1=(low, high)), cosines(K1=(F(low) + F(high)) / 2), list(hints),
-                        points)
+    return none.exclude(cosines(K1=(low, high)), list(hints), points)
 
 
 # ---- x*
@@ -41,6 +40,14 @@ def test_a_range_over_whose_middle_an_x_is_known_is_halved_without_a_scan(monkey
     assert found.proof is None and ("1.8749", "0") in found.xstars
 
 
+def test_a_cell_of_which_one_x_excludes_a_part_is_halved_and_not_linked(monkeypatch):
+    """Orbits of 446 points are followed over narrow ranges only, and these are cheap."""
+    monkeypatch.setattr(none, "linked", None)
+    found = excluded("0.59", "0.594", [("1.8450", "0")], 1 << 16)
+    assert found.proof is None and found.xstars == (("1.8450", "0"),)
+    assert excluded("0.592", "0.593", found.xstars, 1 << 16).proof.no_tori
+
+
 @pytest.mark.slow
 def test_what_one_x_leaves_is_linked_to_others():
     """The first x* leaves four clusters."""
@@ -48,6 +55,16 @@ def test_what_one_x_leaves_is_linked_to_others():
     assert found.proof.no_tori and len(found.proof.trees) > 2
     assert len({each.xstar for each in found.proof.trees}) > 2 and found.proof.verify()
     assert all(any(each.problem.shifts[0]) for each in found.proof.parts)
+
+
+def test_a_cell_takes_no_more_points_than_are_left():
+    family = cosines(K1=("0.535", "0.54"))
+    hints = [("1.7917", "0")]
+    whole = none.exclude(family, hints, 2000)
+    for most in (whole.points - 1, whole.points // 8, 1):
+        part = none.exclude(family, hints, 2000, most)
+        assert most < part.points < most + 50000 and part[1:] == (None, ())
+    assert none.exclude(family, hints, 2000, 10 ** 4, lambda: True) is None
 
 
 def test_a_circle_is_not_linked_away():
@@ -60,7 +77,7 @@ def test_half_a_turn_is_scanned_where_v_is_even(monkeypatch):
     asked = []
     monkeypatch.setattr(none._Search, "_left", lambda self, place, cuts: (asked.append(place), 0))
     for harmonics, part in (({1: 1, (2, "+cos"): 1}, 1), ({(1, "+cos"): 1, (2, "+cos"): 1}, 2)):
-        search = none._Search(Problem.of(FourierMap(harmonics)), 1, bool)
+        search = none._Search(Problem.of(FourierMap(harmonics)), 1, bool, 1)
         asked.clear()
         search._basins()
         scanned = sorted(place[0] / none.SCALE for place in asked)
@@ -78,7 +95,7 @@ def test_no_x_excludes_a_circle():
 def test_two_angles_have_an_x_far_from_the_first_choice():
     family = FourierMap({(1, 0, "-1/2"): {"K": 1}, (0, 1, "+cos"): {"K": 1},
                          ((1, 1), "+cos"): "0.1"}, K=("0.9", "0.92"))
-    assert none.exclude(family, family.at(K="0.91"), [], 10 ** 6).proof.no_tori
+    assert none.exclude(family, [], 10 ** 6).proof.no_tori
 
 
 # ---- values with tori
@@ -148,8 +165,19 @@ def test_gaps_are_looked_at_down_to_a_share_of_what_is_open(monkeypatch):
     assert all(task.value < F("0.2") for task in runs._looks())
 
 
-def test_between_values_with_tori_looks_are_sparse():
+def test_an_end_of_a_run_is_looked_at_as_finely_as_tori_are_proved_near_it(monkeypatch):
+    runs, proved = runs_of({"0": .2, "0.5": .3, "0.52": None}), []
+    monkeypatch.setattr(runs, "_proved", lambda: proved)
+    found = []
+    for nearest in "0.3", "0.4", "0.5":
+        found.append(F("0.51") in {task.value for task in runs._looks()})
+        proved.append(F(nearest))
+    assert found == [False, False, True]
+
+
+def test_between_values_with_tori_looks_are_sparse(monkeypatch):
     runs = runs_of({"0": .2, "0.5": .3, "0.52": None, "0.56": None, "1": .2})
+    monkeypatch.setattr(runs, "_proved", lambda: [F("0.4")])
     assert {task.value for task in runs._looks()} == {F("0.25"), F("0.78"), F("0.51"), F("0.54")}
     runs.looks.update({F(i, 60): (.2,) for i in range(61)})
     assert not [task for task in runs._looks() if task.value < F("0.5")]
@@ -178,7 +206,7 @@ def test_nothing_is_looked_for_where_v_is_0():
     runs = some.Runs(Diagram.of(FourierMap({(1, "+cos"): {"k": 1}}, k=(-1, 1))), [])
     assert runs._is_known(F(0)) and not runs._is_known(F(1, 8))
     family = runs.diagram.over(((F(0), F(0)),))
-    assert none.exclude(family, family, [], 2000)[1:] == (None, ())
+    assert none.exclude(family, [], 2000)[1:] == (None, ())
 
 
 @pytest.mark.slow
@@ -226,6 +254,25 @@ def test_a_diagram_does_not_depend_on_the_workers(tmp_path):
     first, second = (diagram.explore(cosines(K1=("0.28", "0.7")), path=tmp_path / name, budget=2,
                                      jobs=jobs) for name, jobs in (("1.map", 1), ("2.map", 2)))
     assert (first.members, first.search) == (second.members, second.search)
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_no_search_takes_more_than_its_budget(jobs):
+    """What is broken off is done anew by a search that continues with more."""
+    found = diagram.explore(cosines(K1=("0.5", "0.6")), budget="0.4", jobs=jobs)
+    assert found.points == 0.4 * POINTS_A_SECOND
+    work = line._Line(found)
+    parts = sorted((cell.low, cell.high) for cell in work.cells)
+    assert sum(high - low for low, high in [*parts, *found.none[1:-1]]) == F("0.1")
+
+
+def test_what_exceeds_the_budget_is_dropped(monkeypatch):
+    work = line._Line(Diagram.of(cosines(K1=("0.3", "0.6"))))
+    cell = line.Cell(F("0.3"), F("0.4"), 1, F(1))
+    work.take(cell, none.Outcome(100, None, ()), 99)
+    assert work.diagram.points == 99 and work.cells[-1] == cell
+    work.take(cell, none.Outcome(100, None, ()), 100)
+    assert work.diagram.points == 199 and cell.halves(True) == work.cells[-2:]
 
 
 def test_a_cell_next_to_excluded_values_comes_first(monkeypatch):
