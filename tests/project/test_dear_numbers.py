@@ -84,15 +84,11 @@ def test_a_range_without_circles(tmp_path):
 
 
 @dear
-def test_a_point_off_the_diagonal():
-    counts = sharper(POINTS["Froeschlé, B = 0.3"][1]("0.62"))
-    assert missing("method.md", counts.proved) == []
-
-
-@dear
-def test_the_least_single_value_of_the_line_in_the_list():
-    counts = sharper(chart.on_line("0.0139", together=True))
-    assert missing("method.md", counts.proved) == []
+@pytest.mark.parametrize("problem", [
+    POINTS["Froeschlé, B = 0.3"][1]("0.62"), chart.on_line("0.0139", together=True),
+    *(Problem(MuldoonMap(k, 0, 0)) for k in ("0.9717", "0.97165"))], ids=str)
+def test_prisms_of_single_values(problem):
+    assert missing("method.md", sharper(problem).proved) == []
 
 
 @dear
@@ -103,13 +99,6 @@ def test_the_least_single_value_of_the_line_in_the_list():
 def test_the_end_of_the_line(epsilon, prisms, points):
     counts = sharper(chart.on_line(epsilon, "0.0280", together=True))
     assert (counts.proved, counts.max_NTsteps) == (prisms, points)
-
-
-@dear
-@pytest.mark.parametrize("k", ["0.9717", "0.97165"])
-def test_the_longest_orbits_of_the_standard_map(k):
-    counts = sharper(Problem(MuldoonMap(k, 0, 0)))
-    assert missing("method.md", k, counts.proved, counts.max_NTsteps) == []
 
 
 # The rows of portrait.md whose maps are drawn: k, columns, depth, and how they are asked for.

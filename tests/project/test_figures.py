@@ -7,7 +7,7 @@ import runpy
 import chart
 import pytest
 import sides
-from pages import DOCS, PAGES, ROOT, table
+from pages import DOCS, PAGES, ROOT
 
 FIGURES = runpy.run_path(str(DOCS / "figures.py"))
 ROWS = {row["picture"]: row for row in FIGURES["rows"]()}
@@ -70,42 +70,3 @@ def test_scripts_draw_these_values():
     assert toughest["TORUS_AT"][-1] == float(TORUS)
     assert chart.LAST[0] == NO_TORUS
     assert [row[2] for row in sides.LONGEST] == [CIRCLE, "0.0120", "0.0121", TORUS, NO_CIRCLE_ALONE]
-
-
-def test_the_readme_and_the_frontier_say_the_same():
-    cells = [re.findall(r"^\| (?:standard map|the (?:thesis's )?line.*?) \|.*\| (.*?) \|$",
-                        text_of(name), re.MULTILINE)[:2] for name in ("README.md", "frontier.md")]
-    assert cells[0] == cells[1] == ["every k >= %s, and k = %s" % (NO_CIRCLE, NO_CIRCLE_ALONE),
-                                    "every epsilon >= " + NO_TORUS]
-
-
-def test_the_readme_and_trust_name_the_same_theorems():
-    """The largest that each program has confirmed whole."""
-    row = re.search(r"^\| largest theorem .*$", text_of("trust.md"), re.MULTILINE)[0]
-    confirmed = re.findall("epsilon_c <= ([0-9.]+)", row)
-    assert len(confirmed) == 4 and confirmed == re.findall(
-        r"\| epsilon >= ([0-9.]+) \|$", text_of("README.md"), re.MULTILINE)
-
-
-def test_tori_are_those_of_the_tables():
-    """Of single values that were measured on one day: modes, and seconds except for their rounding.
-    The other rows of the page were measured again since the chart."""
-    rows = {(row["map"], row["parameter"]): row for row in table("chart-sides")
-            if row["side"] == "torus"}
-    shown, map_, rotation = 0, "", ""
-    page = text_of("tori.md")
-    for line in page[page.index("| map | rotation"):].split("\n\n")[0].splitlines()[2:]:
-        name, vector, modes, _, _, seconds, release = map(str.strip, line.strip("|").split("|"))
-        map_ = "standard" if "standard" in name else "line" if "thesis" in name else map_
-        rotation = vector.strip("`") or rotation
-        if rotation in ("golden", "V1") and modes[-1].isdigit():
-            row = rows[map_, re.search(r"0\.[0-9]+", name)[0]]
-            if release == row["release"]:
-                assert modes.replace(",", "") == row["parts"], name
-                assert float(seconds.replace(",", "")) == pytest.approx(
-                    float(row["seconds"]), rel=0.03), name
-                shown += 1
-    assert shown == 7
-    for row in table("chart-bound"):
-        if row["what"] == "torus":
-            assert row["seconds"] == rows["line", row["epsilon"]]["seconds"]
