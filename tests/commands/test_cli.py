@@ -8,7 +8,6 @@ import subprocess
 import sys
 
 import pytest
-from conftest import COMMAND
 
 from converse import Proof, check
 from converse.commands import common
@@ -218,11 +217,14 @@ def test_the_sharper_method(run, root, tmp_path):
     (["--unknown"], "--unknown"), (["-b"], "-b"), (["one", "two"], "two"),
     (["-b", ""], "the name of a file is empty"), ([""], "the name of the input file is empty"),
     (["-r", ""], "the name of a file is empty"), (["-b", "."], "is a directory"),
+    (["-b", "/proc/a"], "/proc/a"), (["-g", "/proc/a.pdf"], "/proc/a.pdf"), (["-g", "a"], ".svg"),
+    (["-b", "setup.py"], "setup.py: exists"), (["-g", "b.pdf", "-b", "./b.pdf"], "overwrite"),
     (["-d", "\u0663"], "is not a whole number"),
     (["-p", "40", "--method", "loewner"], "(--precision) is of the method thesis alone"),
     (["/missing/file.in"], "/missing/file.in"), (["/"], "/"),
 ])
-def test_bad_usage(run, arguments, word):
+def test_bad_usage(run, arguments, word, root, monkeypatch):
+    monkeypatch.chdir(root)
     status, out, err = run(*arguments, stdin=GOOD)
     assert status == 2 and out == ""
     assert one_line(err) and word in err
@@ -252,77 +254,6 @@ def test_foreign_letters_in_comments(command, environment, tmp_path):
     assert status == 0 and err == ""
     assert ("\u03b5 \u2264 1" in out) or ("\\u03b5 \\u2264 1" in out)
     assert Proof.load(tmp_path / "b").problem.comments == ("\u03b5 \u2264 1",)
-
-
-@pytest.mark.parametrize("flag", ["-b", "-g"])
-def test_unwritable_places(run, flag, sample, tmp_path):
-    plain = tmp_path / "plain"
-    plain.write_text("")
-    (tmp_path / "a.pdf").mkdir()
-    for place in (tmp_path / "a.pdf", tmp_path / "missing" / "a.pdf", plain / "a.pdf",
-                  "/proc/a.pdf", ""):
-        status, out, err = run(flag, place, sample)
-        assert status == 2 and out == "" and one_line(err)
-        assert str(place) in err
-
-
-def test_backup_over_something_else(run, sample, tmp_path):
-    path = tmp_path / "notes"
-    path.write_text("precious")
-    status, out, err = run("-b", path, sample)
-    assert status == 2 and out == "" and one_line(err) and "notes" in err
-    assert path.read_text() == "precious"
-
-
-def test_figure_over_something_else(run, sample, tmp_path):
-    path = tmp_path / "copy.svg"
-    path.write_bytes(sample.read_bytes())
-    (tmp_path / "link.pdf").symlink_to(path)
-    for arguments in ([path, "-g", path],
-                      [sample, "-b", tmp_path / "b.pdf", "-g", tmp_path / "b.pdf"],
-                      [path, "-g", "%s/./copy.svg" % tmp_path], [path, "-g", tmp_path / "link.pdf"],
-                      [sample, "-b", tmp_path / "b.pdf", "-g", "%s/./b.pdf" % tmp_path]):
-        status, out, err = run(*arguments)
-        assert status == 2 and out == "" and one_line(err) and "overwrite" in err
-    with open(path, "rb") as file, subprocess.Popen(
-            [COMMAND, "-g", path], stdin=file, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE) as process:
-        assert b"overwrite" in process.communicate()[1] and process.returncode == 2
-    assert path.read_bytes() == sample.read_bytes()
-
-
-@pytest.mark.parametrize("name", ["a.proof", "a.proof.gz", "a.svg", "a.pdf"])
-def test_the_figure_destroys_no_proof(run, sample, tmp_path, name):
-    assert run("-b", tmp_path / name, sample)[0] == 0
-    before = (tmp_path / name).read_bytes()
-    status, out, err = run("-g", tmp_path / name, sample)
-    assert (status, out) == (2, "") and one_line(err) and name in err
-    assert (tmp_path / name).read_bytes() == before
-
-
-@pytest.mark.parametrize("name", ["a", "a.json", "a.in", "a.svg.txt", "a.csv"])
-def test_a_figure_has_a_figure_s_name(run, sample, tmp_path, name):
-    status, out, err = run("-g", tmp_path / name, sample)
-    assert (status, out) == (2, "")
-    assert one_line(err) and ".svg or .png or .pdf" in err
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("name, others", [
-    ("a.svg", [b"<?xml version='1.0'?><svg/>"]),
-    ("a.png", [b"precious"]), ("a.pdf", [b"precious"])])
-@pytest.mark.slow
-def test_a_figure_replaces_nothing_but_a_figure(run, sample, tmp_path, name, others):
-    path = tmp_path / name
-    for text in others:
-        path.write_bytes(text)
-        status, out, err = run("-g", path, sample)
-        assert (status, out) == (2, "") and one_line(err) and "not a figure of this program" in err
-        assert path.read_bytes() == text
-    path.write_bytes(b"")
-    for _ in range(2):                      # over nothing, and over itself
-        status, _, err = run("-g", path, sample)
-        assert (status, err) == (0, "") and path.stat().st_size > 1000
 
 
 @pytest.mark.slow

@@ -410,39 +410,6 @@ def test_a_lock_that_is_gone(held, root, tmp_path):
             assert process.returncode == 2 and err.endswith("is not saved\n")
 
 
-def test_a_lock_of_another_run_is_left_alone(tmp_path):
-    path = str(tmp_path / "a")
-    with files.Lock(path):
-        os.unlink(path + ".lock")
-        open(path + ".lock", "w").close()       # as if another run had come
-    assert os.path.exists(path + ".lock")
-
-
-def test_a_file_is_on_the_disk_before_it_replaces_another(tmp_path, monkeypatch):
-    """Else a power failure after the renaming could leave neither the old text nor the new one."""
-    done, real = [], {name: getattr(os, name) for name in ("fsync", "replace")}
-    for name in real:
-        def call(*arguments, name=name):
-            done.append(name)
-            return real[name](*arguments)
-        monkeypatch.setattr(os, name, call)
-    files.write(tmp_path / "a", b"x")
-    assert done == ["fsync", "replace"]
-
-
-@pytest.mark.parametrize("mask, mode", [(0o077, 0o600), (0o022, 0o644)])
-def test_permissions_of_a_new_file(tmp_path, mask, mode):
-    before = os.umask(mask)
-    try:
-        files.write(tmp_path / "new", b"")
-    finally:
-        os.umask(before)
-    assert (tmp_path / "new").stat().st_mode & 0o777 == mode
-    (tmp_path / "new").chmod(0o640)
-    files.write(tmp_path / "new", b"x")
-    assert (tmp_path / "new").stat().st_mode & 0o777 == 0o640
-
-
 def test_interrupted_before_anything_was_found(begun, sample, tmp_path):
     backup = tmp_path / "a.proof"
     with begun("-p", "100000", "-b", backup, sample) as (process, _):
