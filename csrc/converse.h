@@ -84,6 +84,7 @@ typedef struct {
     const char *shift[3][3];            /* in units of pi; NULL: none */
     int frame[3][3];
     int odd;                            /* is V odd about some point?  See cv_at_once */
+    int symmetric; /* does every exchange of coordinates map patch and region to themselves? */
     int exact;                          /* are the phases not off at all? */
 } cv_problem;
 

@@ -4,6 +4,7 @@
        tree a b c half-a half-b half-c together [threads] */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "search/search.h"
 
@@ -18,7 +19,9 @@ int main(int argc, char **argv)
                                  .angle = { "0", "0" },
                                  .half = { "1", "1" },
                                  .frame = { { 1, 0 }, { 0, 1 } },
-                                 .odd = 1 };
+                                 .odd = 1,
+                                 .symmetric = argc > 7 && !strcmp(argv[1], argv[2]) &&
+                                              !strcmp(argv[4], argv[5]) };
     const int threads = argc == 9 ? atoi(argv[8]) : 1;
     cv_search *s;
     cv_view view;

@@ -96,16 +96,21 @@ def halved(problem: Problem, xstar: Point) -> Problem:
 def skips(problem: Problem, xstar: Point) -> bool:
     """May the search skip prisms for the sake of their mirror images, which must then be proved,
     and not be linked to other starting points?"""
-    return problem.frame == IDENTITY and problem.v0 == problem.v1 and not problem.shifts and \
-        exchangeable(problem, xstar)
+    return problem.size == 2 and symmetric(problem) and exchangeable(problem, xstar)
+
+
+def symmetric(problem: Problem) -> bool:
+    """Does each exchange of neighbouring coordinates map the patch and the region to themselves?"""
+    return problem.frame == identity(problem.size) and len(set(problem.region)) == 1 and \
+        not problem.shifts and exchangeable(problem, ("0",))
 
 
 def _sums(terms):
     """What the amplitudes of waves with the same k and phase add up to, and their parts."""
     sums = {}
     for k, phase, p, parts in terms:
-        before = sums.get((k, phase), (0,) * (1 + len(parts)))
-        sums[k, phase] = tuple(a + b for a, b in zip(before, (p, *parts)))
+        before = sums.get((k, phase % 2), (0,) * (1 + len(parts)))
+        sums[k, phase % 2] = tuple(a + b for a, b in zip(before, (p, *parts)))
     return {wave: numbers for wave, numbers in sums.items() if any(numbers)}
 
 

@@ -11,6 +11,7 @@ from typing import List, Optional, Tuple
 from ..model.exact import decimal_text
 from ..model.map import HIGHEST
 from ..model.problem import Problem, rows
+from ..model.region import symmetric
 from ..storage.files import ConverseError
 from ..version import __version__
 from .settings import Settings
@@ -252,6 +253,7 @@ def native_problem(problem, owners, one=None):
         "half": [text((high - low) / 2) for low, high in ends],
         "shift": [[text(shift[i]) for shift in problem.shifts] for i in angles],
         "frame": [[one.c]] if one else rows(problem.frame), "odd": problem.odd is not None,
+        "symmetric": not one and symmetric(problem),
         "exact": all((10 ** PHASE_PLACES * term.phase).denominator == 1 for term in problem.terms)})
 
 

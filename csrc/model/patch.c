@@ -137,6 +137,7 @@ int patch_read(patch *p, const cv_problem *given)
     p->n_waves = given->n_waves;
     p->n_parameters = given->n_parameters;
     p->odd = given->odd;
+    p->symmetric = given->symmetric;
     for (int i = 0; i < p->n_waves; i++)
         read_wave(p, i, &given->waves[i], given->exact, &status);
     read_region(p, given, &status);
@@ -155,79 +156,19 @@ int is_identity(const patch *p)
     return good;
 }
 
-int has_plain_region(const patch *p)
+int is_of_thesis(const patch *p)
 {
-    int plain = is_identity(p);
+    int good = p->n_angles == 2 && p->n_waves == 3 && p->n_parameters == 3 && is_identity(p);
 
     for (int i = 0; i < p->n_angles; i++)
         for (int m = 0; m < p->n_parameters; m++)
-            plain = plain && apm_sgn(p->shift[i][m]) == 0;
-    return plain;
-}
-
-int thesis_parameters(const patch *p)
-{
-    int good = p->n_angles == 2 && p->n_waves == 3 && p->n_parameters == 3;
-
+            good = good && apm_sgn(p->shift[i][m]) == 0;
     for (int i = 0; i < 3 && good; i++) {
         good = p->k[i][0] == (i != 1) && p->k[i][1] == (i != 0) && apm_sgn(p->phase[i]) == 0;
         for (int m = 0; m < 3; m++)
             good = good && (m == i ? apm_sgn(p->part[i][m]) >= 0 : apm_sgn(p->part[i][m]) == 0);
     }
     return good;
-}
-
-/* Are j and k the same when coordinates a and b are exchanged in one of them? */
-static int exchanged(const int j[ANGLES], const int k[ANGLES], int a, int b)
-{
-    int same = j[a] == k[b] && j[b] == k[a];
-
-    for (int i = 0; i < ANGLES; i++)
-        same = same && (i == a || i == b || j[i] == k[i]);
-    return same;
-}
-
-/* Does the exchange of coordinates a and b keep these amplitudes, one of each wave?  Amplitudes of
-   waves with equal k and phase are added up first. */
-static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_WAVES], int a, int b)
-{
-    int good = 1;
-    apm_t sum;
-
-    apm_init(sum);
-    for (int i = 0; i < p->n_waves; i++) {
-        apm_set_si(sum, 0, 0);
-        for (int j = 0; j < p->n_waves; j++) {
-            if (apm_cmp(p->phase[i], p->phase[j]) != 0)
-                continue;
-            if (exchanged(p->k[i], p->k[j], a, a))
-                apm_add(sum, sum, amplitude[j]);
-            if (exchanged(p->k[i], p->k[j], a, b))
-                apm_sub(sum, sum, amplitude[j]);
-        }
-        good = good && apm_sgn(sum) == 0;
-    }
-    apm_clear(sum);
-    return good;
-}
-
-/* In the thesis's patch, whose waves have one parameter each, a and b change places.  Otherwise
-   each parameter keeps its place. */
-int patch_symmetric(const patch *p)
-{
-    const apm_struct *vector[MOST_WAVES];
-    int good = p->n_angles > 1 && has_plain_region(p);
-
-    for (int a = 0; a + 1 < p->n_angles && good; a++) {
-        good =
-            apm_cmp(p->angle[a], p->angle[a + 1]) == 0 && apm_cmp(p->half[a], p->half[a + 1]) == 0;
-        for (int m = -1; m < (thesis_parameters(p) ? 0 : p->n_parameters); m++) {
-            for (int i = 0; i < p->n_waves; i++)
-                vector[i] = m < 0 ? p->amplitude[i] : p->part[i][m];
-            good = good && exchangeable(p, vector, a, a + 1);
-        }
-    }
-    return good && (!thesis_parameters(p) || apm_cmp(p->part[0][0], p->part[1][1]) == 0);
 }
 
 void patch_amplitudes(const patch *p, double t, double to[MOST_WAVES])

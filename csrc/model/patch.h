@@ -11,8 +11,8 @@ enum { MOST_WAVES = 16, PARAMETERS = 3, ANGLES = 3 };
 /* cv_problem as numbers; phases in radians, which may be off by 10^-39.  quarters: how many quarter
    turns a phase is exactly, 0 to 3, or -1. */
 typedef struct {
-    int n_angles, n_waves, n_parameters, k[MOST_WAVES][ANGLES], frame[ANGLES][ANGLES], odd;
-    int quarters[MOST_WAVES];
+    int n_angles, n_waves, n_parameters, k[MOST_WAVES][ANGLES], frame[ANGLES][ANGLES];
+    int odd, symmetric, quarters[MOST_WAVES];
     apm_t phase[MOST_WAVES], amplitude[MOST_WAVES], part[MOST_WAVES][PARAMETERS];
     apm_t angle[ANGLES], half[ANGLES], shift[ANGLES][PARAMETERS], xstar[ANGLES];
 } patch;
@@ -26,15 +26,9 @@ int patch_read(patch *p, const cv_problem *given);
 
 int is_identity(const patch *p); /* Is the frame? */
 
-/* Are these the thesis's waves, in its order and without phases, each with its own parameter? */
-int thesis_parameters(const patch *p);
-
-/* Is the frame the identity, and does the region of x_1 not move with the parameters? */
-int has_plain_region(const patch *p);
-
-/* Does every exchange of coordinates map the patch and the region of x_1 to themselves?  0 for a
-   region that moves, and for one angle. */
-int patch_symmetric(const patch *p);
+/* Are these the thesis's waves, in its order and without phases, each with its own parameter, in the
+   identity frame and without shifts? */
+int is_of_thesis(const patch *p);
 
 /* The amplitudes in doubles, where each parameter is t. */
 void patch_amplitudes(const patch *p, double t, double to[MOST_WAVES]);

@@ -71,7 +71,7 @@ static int set_start(cv_search *s, const char *const xstar[ANGLES])
 {
     int status = CV_OK;
 
-    s->symmetric = patch_symmetric(&s->problem);
+    s->symmetric = s->problem.symmetric;
     if (xstar == NULL)
         status = choose_xstar(s, s->problem.xstar);
     for (int j = 0; j < s->problem.n_angles && xstar != NULL; j++)

@@ -14,7 +14,7 @@ typedef struct {
 static int thesis_accepts(const patch *p, const precision *how)
 {
     (void)how;
-    return thesis_parameters(p) && has_plain_region(p) ? CV_OK : CV_EARGUMENT;
+    return is_of_thesis(p) ? CV_OK : CV_EARGUMENT;
 }
 
 static void thesis_choose_start(const patch *p, int symmetric, double x[ANGLES])
