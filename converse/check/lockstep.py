@@ -1,9 +1,10 @@
 """The fast path: a thousand prisms in lockstep, in doubles.
 
 The same bound as in exact.py, steps (C4) to (C8) of docs/proofs/checker.md, where rounding errors
-are bounded by steps (C9) to (C20).  A leaf that is not excluded here is left to the integers.
-Each operation is done to all prisms together, as arrays of numpy, whose operations round to nearest
-(import_numpy_if_sound tests this).
+are bounded by steps (C9) to (C20).  Where V is even about x* orbits are followed to one side of it:
+step (C32).  A leaf that is not excluded here is left to the integers.  Each operation is done to
+all prisms together, as arrays of numpy, whose operations round to nearest (import_numpy_if_sound
+tests this).
 """
 
 import collections
@@ -381,7 +382,7 @@ class Sums:
     def join(self, joined):
         """Puts the lanes of each prism together."""
         for name in ("value", "low", "mass", "bent", "error", "linear", "square", "cubic", "mixed",
-                     "skew", "ends"):
+                     "skew"):
             setattr(self, name, joined(getattr(self, name)))
 
     def form(self):
@@ -411,15 +412,17 @@ class Sums:
 
 class Prisms:
     """Prisms followed and bounded in lockstep; all arrays end with the axis of lanes, those ahead
-    before those back."""
+    before those back.  If V is even about x*, only those back: step (C32)."""
 
-    def __init__(self, box, shape, xstar, l, penalties=SITE_PENALTIES[0], memory=MEMORY_MAX):
+    def __init__(self, box, shape, xstar, l, penalties=SITE_PENALTIES[0], memory=MEMORY_MAX,
+                 even=False):
         """The box: amplitudes as in_turns() gives them, h (by wave and symbol) and W of the waves,
         X[1], its columns (by coordinate and symbol, of which the last two span the parallelogram)
         and the error of x[1], in radians; the Shape; x*; l; and penalties (see SITE_PENALTIES).
-        X[1] and x* are in units of 2^-64 turns.  memory: bytes that the sites may take."""
+        X[1] and x* are in units of 2^-64 turns.  memory: bytes that the sites may take.  even: is V
+        even about x* for all parameters?"""
         turns, h, W, x, columns, off = box
-        self.size, self.shape = x.shape[1], shape
+        self.size, self.shape, self.even = x.shape[1], shape, even
         self.turns = [self.both(part, part) for part in turns]
         self.P, self.h, self.W = self.turns[-1] * TWO_PI, self.both(h, h), self.both(W, W)
         self.H = np.abs(self.h).sum(axis=1) * SUM_ROUNDING
@@ -430,13 +433,16 @@ class Prisms:
         self.known, self.pairs = shape.symbols, pairs_of(shape.symbols)
         self.halves = np.array([[0.5 if i == j else 1] for i, j in self.pairs])
         start, blank, rounding = xstar + 0 * x, 0 * columns, np.full_like(off, WHOLE_ERROR)
-        self.ends, self.rounding = self.both(columns, blank), self.both(off, rounding)
+        if even:                        # the mirror image of x[1], too
+            off = off + WHOLE_ERROR * (3 + combined(shape.strong, self.magnitude + self.H + self.W))
+        self.ends, self.rounding = [np.concatenate(pair, axis=-1) for pair in (
+            (columns, blank), (off, rounding))]
         self.bound_roundings()
         off, rounding = [scaled_sum(self.turn, u) for u in (off, rounding)]
         self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, off)
         self.first = self.both(x, start), self.both(columns, blank), self.both(off, rounding)
         self.sites, self.excluded = [], np.zeros(self.size, bool)  # which are not followed further
-        self.sites_max = memory // (2 * self.size * shape.site_bytes)
+        self.sites_max = memory // (self.l.size * shape.site_bytes)
         self.begin()
 
     def bound_roundings(self):
@@ -458,15 +464,17 @@ class Prisms:
     def diagonal(self):
         return DIAGONAL[len(self.shape.forms)]
 
-    @staticmethod
-    def both(ahead, back):
-        return np.concatenate((ahead, back), axis=-1)
+    def both(self, ahead, back):
+        return back if self.even else np.concatenate((ahead, back), axis=-1)
 
     def other(self, lanes):
-        return np.roll(lanes, self.size, axis=-1)
+        """Of the other lane; zero if it is not followed."""
+        return np.roll(lanes, self.size, axis=-1) if lanes.shape[-1] > self.size else \
+            np.zeros_like(lanes)
 
     def joined(self, lanes):
-        return lanes[..., :self.size] + lanes[..., self.size:]
+        return lanes[..., :self.size] + lanes[..., self.size:] if lanes.shape[-1] > self.size \
+            else lanes
 
     def begin(self):
         """The lanes at their first sites.  LT: L, then T, as columns; near: a bound of L e + T(e)
@@ -651,6 +659,8 @@ class Prisms:
         inverse = tail
         for k in range(len(ends) - 1, -1, -1):
             blocks.append(self.penalized(self.sites[k]))
+            if self.even and k == 0:
+                blocks[-1] /= 2
             inverse, definite = inverted(blocks[-1] - np.where(ends[k], inverse, tail))
             back.append(inverse)
             good = good & (definite | ~self.sites[k].alive)
@@ -664,6 +674,7 @@ class Prisms:
         tail, (N, lanes) = self.tail(), (len(ends), self.l.size)
         begins, scores = np.empty((N, lanes), bool), np.empty((N, lanes))
         good, inverse = self.other((whole < 0) & self.sites[0].alive), self.other(back[0])
+        good |= self.even
         span = max(1, BLOCK // lanes)
         ahead = blocks
         for start in range(0, N, span):
@@ -691,7 +702,7 @@ class Prisms:
         best = np.minimum.reduceat(scores.ravel(), starts)
         first = np.searchsorted(starts, np.arange(lanes) * N)       # segment of each lane
         # A segment that spans both lanes is one.
-        spans = ~begins[0] & ~self.other(begins[0])
+        spans = ~begins[0] & self.other(~begins[0])
         near = best[first]
         farther = (near > self.other(near)) | (near == self.other(near)) \
             & (np.arange(lanes) >= self.size)
@@ -726,13 +737,17 @@ class Prisms:
             sites, n0 = self.sites[start:start + span], stacked(n[start:start + span])
             n1 = stacked([*n[start + 1:start + span + 1], 0 * n[0]][:len(sites)])
             omega = shape.along(n0) ** 2
+            if self.even and not start:     # half of the site x[0]; of 2 |n|^2 see below
+                omega[:, 0] /= 2
             mus, A, B, mu, mu1 = self.multipliers(sites, omega, mu, mu1)
             terms = self.add_sites(sums, Sites.block(sites), n0, n1, omega,
                                    stacked(tails[start:start + span]), mus, A, B)
-        self.add_ends(sums, mu, mu1, terms)
+        sums.low -= scalar(n[0], n[0] if self.even else self.other(n[0]))
         sums.join(self.joined)
-        x, y = n[0][:, :self.size], n[0][:, self.size:]
-        value = sums.value + sums.low - 2 * scalar(x, y)
+        if self.even:                   # x[1] and beyond are without n and mu
+            mu, mu1, terms = [np.concatenate((0 * x, x), axis=-1) for x in (mu, mu1, terms)]
+        self.add_ends(sums, mu, mu1, terms)
+        value = sums.value + sums.low
         form = sums.form()
         added = sum([np.abs(x) for x in form.values()])
         chain = (len(self.P) + 2) * (span + -(-N // span))  # terms one after the other: (C19)
@@ -792,8 +807,8 @@ class Prisms:
         G, terms = G - across, terms + np.abs(across).sum(axis=1)
         small = np.abs(G).sum(axis=1) * self.rounding \
             + self.shape.grain * terms * (np.abs(self.ends).sum(axis=1) + self.rounding)
-        sums.error += small.sum(axis=0)
-        sums.ends = np.stack([scalar(G, side) for side in self.ends.swapaxes(0, 1)])
+        sums.error += self.joined(small.sum(axis=0))
+        sums.ends = self.joined(np.stack([scalar(G, side) for side in self.ends.swapaxes(0, 1)]))
 
     def bound(self):
         """An upper bound of the left side of (C3) for each prism; and about how much each symbol
@@ -812,6 +827,18 @@ class Prisms:
 def least_in_double(criterion, cell):
     """l from below as a double: the quotient is rounded to nearest, the rest lowers it."""
     return criterion.least_pivot(cell) / criterion.fixed.one * (1 - 2.0 ** -50)
+
+
+def middle_of(claim):
+    """The point about which V is even for all parameters, in units of 2^-64 turns, if this is x* up
+    to WHOLE_ERROR: step (C32).  Else None."""
+    low, high = fixed_of(256).around_pi
+    quarters = [round(2 * x / low) for x in claim.xstar]
+    even = all((Fraction(dot(wave.k, quarters), 2) + wave.phase) % 1 == Fraction(1, 2)
+               for wave in claim.waves)
+    near = all(max(abs(x - q * pi / 2) for pi in (low, high)) <= WHOLE_ERROR
+               for x, q in zip(claim.xstar, quarters))
+    return [q << 62 for q in quarters] if even and near else None
 
 
 class Lockstep:
@@ -871,8 +898,10 @@ class Lockstep:
         self.moves = np.array([[units(along) for along in claim.moves] for claim in claims],
                               object).transpose(1, 2, 0)
         self.rows = np.array([claim.rows for claim in claims], object).transpose(1, 2, 0)
-        self.xstar = wrapped(np.array([[units_of(x, 64) for x in claim.xstar] for claim in claims],
-                                      object).T)
+        middles = [middle_of(claim) for claim in claims]
+        self.even = None not in middles
+        self.xstar = wrapped(np.array(middles if self.even else [
+            [units_of(x, 64) for x in claim.xstar] for claim in claims], object).T)
 
     def box(self, index, cuts, number):
         """Boxes that cover these cells of the claims with these numbers, as Prisms takes them."""
@@ -934,7 +963,7 @@ class Lockstep:
         long for a batch of this size.  halved: how often each cell was halved along each axis."""
         with np.errstate(all="ignore"):
             prisms = Prisms(self.box(index, cuts, number), self.shape, self.xstar[:, number], l,
-                            penalties, self.memory)
+                            penalties, self.memory, self.even)
             for ready in prisms.follow():
                 if not ready:
                     return None

@@ -1529,7 +1529,7 @@ def test_errors_where_the_lanes_meet_are_counted(np, G, mu, terms, least):
 
     shape, sums = check.Shape([((1, 0), 0)]), types.SimpleNamespace(error=np.zeros(1))
     check.Prisms.add_ends(types.SimpleNamespace(
-        other=np.array, rounding=np.full((2, 1), 0.5), shape=shape,
+        other=np.array, joined=np.array, rounding=np.full((2, 1), 0.5), shape=shape,
         ends=np.array([[[1.0], [-2.0]], [[4.0], [0.0]]])), sums, first(G), first(mu),
         np.array([[float(x)] for x in terms]))
     assert shape.grain >= 64 * check.UNIT and sums.error >= least(shape.grain)
@@ -1548,7 +1548,7 @@ def test_a_wave_that_vanishes_in_the_middle_is_there(np, texts):
 def test_roundings_of_slopes_are_counted_at_every_site(np, texts, monkeypatch):
     """Not only where the lanes meet, which is left out here."""
     monkeypatch.setattr(check.Prisms, "add_ends", lambda prisms, sums, G, *_: setattr(
-        sums, "ends", np.zeros((prisms.known, *G.shape[1:]))))
+        sums, "ends", np.zeros((prisms.known, G.shape[1], prisms.size))))
     text = with_field(with_tree(texts["trig278"], "P"), "v0", "1 0.001")
     prisms = prisms_of(claim_of(with_field(text, "v1", "1 0.001")), 0.3)
     assert all(prisms.follow()) and len(prisms.sites) > 1
