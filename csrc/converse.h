@@ -67,7 +67,8 @@ typedef struct cv_search cv_search;
    in [-1, 1]: p = amplitude + t_1 part[0] + t_2 part[1] + t_3 part[2]. */
 typedef struct {
     int k[3];
-    const char *phase; /* in units of pi; it may be off by 10^-40 */
+    const char *phase; /* in units of pi, from 0 to 2; it may be off by 10^-40 */
+    int quarters; /* how many quarter turns it is exactly, or -1 */
     const char *amplitude;
     const char *part[3];
 } cv_wave;
@@ -85,7 +86,6 @@ typedef struct {
     int frame[3][3];
     int odd;                            /* is V odd about some point?  See cv_at_once */
     int symmetric; /* does every exchange of coordinates map patch and region to themselves? */
-    int exact;                          /* are the phases not off at all? */
 } cv_problem;
 
 /* A new search; it covers an enclosure of the problem's region.  The thesis's waves are (1, 0),

@@ -237,7 +237,9 @@ def native_problem(problem, owners, one=None):
         if one:
             size = sum(x * x for x in one.q)
             k = [sum(a * b for a, b in zip(k, one.q)) // size]
-        return {"k": k, "phase": native_text(_nearly(term.phase), owners),
+        turns = 2 * term.phase % 4
+        return {"k": k, "phase": native_text(_nearly(turns / 2), owners),
+                "quarters": int(turns) if turns.denominator == 1 else -1,
                 "amplitude": text(size * term.p if there else 0),
                 "part": [text(size * part if there else 0) for part in term.parts]}
 
@@ -253,8 +255,7 @@ def native_problem(problem, owners, one=None):
         "half": [text((high - low) / 2) for low, high in ends],
         "shift": [[text(shift[i]) for shift in problem.shifts] for i in angles],
         "frame": [[one.c]] if one else rows(problem.frame), "odd": problem.odd is not None,
-        "symmetric": not one and symmetric(problem),
-        "exact": all((10 ** PHASE_PLACES * term.phase).denominator == 1 for term in problem.terms)})
+        "symmetric": not one and symmetric(problem)})
 
 
 def _nearly(phase):

@@ -49,29 +49,7 @@ static void read_number(apm_t x, const char *text, int *status)
     apm_clear(most);
 }
 
-/* Converts a phase from units of pi to radians, without whole turns.  Returns its quarter turns, or
-   -1. */
-static int reduce(apm_t phase)
-{
-    int quarters = 4;
-    apm_t t;
-
-    apm_init(t);
-    apm_mul_si(t, phase, 5);
-    apm_scale(t, t, -1);
-    apm_floor(t, t);
-    apm_mul_si(t, t, -2);
-    apm_add(phase, phase, t);
-    do
-        apm_set_si(t, 5 * --quarters, -1);
-    while (quarters >= 0 && apm_cmp(phase, t) != 0);
-    apm_pi(t, PHASE_PLACES);
-    apm_mul(phase, phase, t);
-    apm_clear(t);
-    return quarters;
-}
-
-static void read_wave(patch *p, int i, const cv_wave *wave, int exact, int *status)
+static void read_wave(patch *p, int i, const cv_wave *wave, const apm_t pi, int *status)
 {
     int zero = 1;
 
@@ -87,10 +65,8 @@ static void read_wave(patch *p, int i, const cv_wave *wave, int exact, int *stat
     read_number(p->amplitude[i], wave->amplitude, status);
     for (int m = 0; m < p->n_parameters; m++)
         read_number(p->part[i][m], wave->part[m], status);
-    if (*status == CV_OK) {
-        const int quarters = reduce(p->phase[i]);
-        p->quarters[i] = exact ? quarters : -1;
-    }
+    apm_mul(p->phase[i], p->phase[i], pi);
+    p->quarters[i] = wave->quarters;
 }
 
 static int determinant(int f[ANGLES][ANGLES])
@@ -129,6 +105,7 @@ static void read_region(patch *p, const cv_problem *given, int *status)
 int patch_read(patch *p, const cv_problem *given)
 {
     int status = CV_OK;
+    apm_t pi;
 
     if (given->n_angles < 1 || given->n_angles > ANGLES || given->n_waves < 1 ||
         given->n_waves > MOST_WAVES || given->n_parameters < 0 || given->n_parameters > PARAMETERS)
@@ -138,8 +115,11 @@ int patch_read(patch *p, const cv_problem *given)
     p->n_parameters = given->n_parameters;
     p->odd = given->odd;
     p->symmetric = given->symmetric;
+    apm_init(pi);
+    apm_pi(pi, PHASE_PLACES);
     for (int i = 0; i < p->n_waves; i++)
-        read_wave(p, i, &given->waves[i], given->exact, &status);
+        read_wave(p, i, &given->waves[i], pi, &status);
+    apm_clear(pi);
     read_region(p, given, &status);
     return status;
 }
