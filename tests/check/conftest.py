@@ -6,7 +6,7 @@ import pytest
 from converse import StandardMap, prove, tori
 from converse.diagram import Diagram
 
-from checker import check
+from checker import check, says_the_same
 from truth import TORTURE
 
 BOUNDS = {}             # found by torus_bound in this process, by what was asked
@@ -47,12 +47,16 @@ def generator(request):
 
 @pytest.fixture
 def run(tmp_path, capsys):
-    """Checks a text or bytes: (status, stdout, stderr)."""
+    """Checks a text or bytes: (status, stdout, stderr).  A short proof file is checked by both
+    checkers."""
     def run(data, *options, name="some.proof"):
         path = tmp_path / name
-        path.write_bytes(data if isinstance(data, bytes) else data.encode("utf-8"))
+        data = data if isinstance(data, bytes) else data.encode("utf-8")
+        path.write_bytes(data)
         status = check.main([*options, str(path)])
         out, err = capsys.readouterr()
+        if data.startswith(b"converse proof 6") and len(data) < 20000 and not options:
+            assert says_the_same(path, status)
         return status, out, err.replace(str(path), "FILE")      # its directory names the test
     return run
 

@@ -601,19 +601,6 @@ def test_losses_are_those_of_all_narrower_strips(name):
 
 # ---- series
 
-def value(f, ring, place, theta, s):
-    """Of an entry of a series, by its modes."""
-    re, im = f.entries[place]
-    step, total = ring.box.degree + 1, mp.mpc(0)
-    for group, m in enumerate(ring.box.modes()):
-        k = field.combination(m, ring.box.norm.basis)
-        wave = mp.expj(sum(x * y for x, y in zip(k, theta)))
-        for j in range(step):
-            at = group * step + j
-            total += mp.mpc(re[at], im[at] if im else 0) * wave * s ** j
-    return total / ring.one
-
-
 def random_entry(rng, ring, is_real, scale):
     step, found = ring.box.degree + 1, []
     for _ in range(1 if is_real else 2):
@@ -625,74 +612,6 @@ def random_entry(rng, ring, is_real, scale):
 FRAMES = {"one": ([[1]], (1,), [(1,)]), "two": ([[1, 1], [1, -1]], (1, 3), [(1, 0), (0, 1)]),
           "skew": ([[1, 2], [0, 1]], (3, 2), [(1, 0), (0, 1)]),
           "part": ([[1, 1], [1, -1]], (2, 5), [(1, 1), (2, 0)])}
-
-
-def table(ring, entry):
-    """{(k, j): coefficient}."""
-    re, im = entry
-    steps, found = ring.box.degree + 1, {}
-    for at, m in enumerate(ring.box.modes()):
-        k = field.combination(m, ring.box.norm.basis)
-        for j in range(steps):
-            found[k, j] = (re[at * steps + j], im[at * steps + j] if im else 0)
-    return found
-
-
-@pytest.mark.parametrize("name", FRAMES)
-@pytest.mark.parametrize("limit, degree", [(17, 0), (11, 2)])
-@pytest.mark.parametrize("extreme", [False, True])
-def test_products_within_the_box_are_exact(name, limit, degree, extreme, monkeypatch):
-    """But for one rounding, with all modes of the box; also if all coefficients are as large as
-    their digits allow.  Powers of s that are left out come to the next k."""
-    monkeypatch.setattr(series, "PARTS", 1)
-    ring = series.Ring(series.Box(field.Norm(*FRAMES[name]), limit, degree), Fraction(9, 8), 20)
-    rng, steps, beside = random.Random(limit), degree + 1, ring.box.norm.basis[0]
-    for is_real in (True, False):
-        factors = []
-        for _ in range(2):
-            entry = [[0 if 2 * length > limit - ring.box.norm(beside) else 10 ** 6 if extreme
-                      else rng.randrange(-10 ** 6, 10 ** 6)
-                      for length in ring.box.lengths for _ in range(steps)] for _ in range(2)]
-            factors.append(ring.series(1, 1, [(entry[0], None if is_real else entry[1])]))
-        f, g = [table(ring, factor.entries[0]) for factor in factors]
-        exact = dict.fromkeys(f, (0, 0))
-        for (k, i), (a, b) in f.items():
-            for (q, j), (c, d) in g.items():
-                if (a or b) and (c or d):
-                    more, power = divmod(i + j, steps)
-                    to = tuple(x + y + more * z for x, y, z in zip(k, q, beside)), power
-                    re, im = exact[to]
-                    exact[to] = re + a * c - b * d, im + a * d + b * c
-        product = ring.multiply(*factors)
-        assert degree or product.radius < 9 + 2 * ring.ones        # nothing but roundings
-        found = table(ring, product.entries[0])
-        assert all((x >> 20, y >> 20) == found[at] for at, (x, y) in exact.items())
-
-
-@pytest.mark.parametrize("limit, most", [(9, 4), (3, 3)])
-def test_powers_that_are_left_out_count_where_they_come_to_lie(limit, most):
-    """s^2 times s^2: it is lost, and comes to another k, |k| = 4 if that is in the box."""
-    ring = series.Ring(series.Box(field.Norm([[1]], (4,), [(1,)]), limit, 2), Fraction(9, 8), 40)
-    entry = [0] * ring.box.count
-    entry[ring.box.centre * 3 + 2] = ring.one
-    f = ring.series(1, 1, [(entry, None)])
-    product = ring.multiply(f, f)
-    off = ring.norm(product) - product.radius + (ring.one << series.FINE)
-    assert off >= (ring.one << series.FINE) * (1 + (limit > 4))
-    assert product.radius >= off and product.radius >= int(
-        (1 + Fraction(9, 8) ** most) * (ring.one << series.FINE))
-
-
-@pytest.mark.parametrize("limit, rows", [(9, 4), (6, 4), (0, 4), (6, 1)])
-def test_what_a_product_leaves_out_is_the_sum_over_its_pairs(limit, rows):
-    """Of all pairs |k| + |k'| > limit or j + j' > degree, once each; rows: powers of s, or all of
-    them together."""
-    ring = series.Ring(series.Box(field.Norm([[1]], (1,), [(1,)]), 9, 3), Fraction(9, 8), 2)
-    rng = random.Random(limit)
-    p, q = [[[rng.randrange(10 ** 30) for _ in range(10)] for _ in range(rows)] for _ in range(2)]
-    lost = sum(x * y for i, xs in enumerate(p) for j, ys in enumerate(q)
-               for a, x in enumerate(xs) for b, y in enumerate(ys) if a + b > limit or i + j > 3)
-    assert ring._beyond(p, q, limit) == (lost >> 2 + series.FINE) + 1
 
 
 def test_a_range_of_many_powers_has_as_many_terms_as_coefficients():
@@ -830,53 +749,6 @@ def test_all_of_the_residual_is_compared(run, monkeypatch, share, status):
     monkeypatch.setattr(tori, "Residual", Known)
     monkeypatch.setattr(tori, "allowed", lambda *_: (Fraction(1, 10 ** 6), Fraction(9)))
     assert run(sealed(BODY))[0] == status
-
-
-@pytest.mark.parametrize("limit, bits", [(6, 60), (24, 24)])
-def test_the_residual_is_within_its_radius(monkeypatch, limit, bits):
-    """Each coefficient of E(u), from values at 128 angles."""
-    seen, norm, sigma = [], series.Ring.norm, Fraction(9, 8)
-    monkeypatch.setattr(series.Ring, "norm", lambda ring, f: seen.append(f) or norm(ring, f))
-    torus = small_torus(["0 -4000000000", "0 800000000"], "1 0 1/8 0.5")
-    ring = series.Ring(series.Box(torus.norm, limit, 0), sigma, bits)
-    found, size, modes = tori.Residual(torus, ring, 5), 128, limit + 1
-    (re, im), = seen[-1].entries
-    u = [mp.mpf(-4 * 16 ** 9) / 2 ** 40, mp.mpf(8 * 16 ** 8) / 2 ** 40]
-    w = mp.pi * (mp.sqrt(5) - 1)
-    assert torus.modes[(1,)][0][0][1] == -4 * 16 ** 9
-    at = [2 * mp.pi * n / size for n in range(size)]
-
-    def x(theta):
-        return -2 * sum(c * mp.sin(k * theta) for k, c in enumerate(u, 1))
-
-    values = [x(t + w) - 2 * x(t) + x(t - w) - mp.cos(t + x(t) + mp.pi / 8) / 2 for t in at]
-    off, total = mp.mpf(0), mp.mpf(0)
-    for k in range(-modes, modes + 1):
-        exact = sum(v * mp.expj(-k * t) for v, t in zip(values, at)) / size
-        computed = mp.mpc(re[k + modes], im[k + modes]) / ring.one
-        off += abs(exact - computed) * mp.mpf(1.125) ** abs(k)
-        total += abs(exact) * mp.mpf(1.125) ** abs(k)
-    assert off <= found.radius.numerator / mp.mpf(found.radius.denominator)
-    assert total <= float(found.polynomial + found.radius) * (1 + 1e-9)
-    for n in range(8):                  # on the strip's boundary
-        theta = mp.mpc(n, -mp.log(1.125))
-        assert abs(mp.expj(theta + x(theta))) <= float(found.bounds[0][2])
-
-
-def test_roundings_of_second_differences_are_counted(monkeypatch):
-    """Those of u_+ - 2u + u_- for many modes, beside which the force is nothing."""
-    seen, norm, rng = [], series.Ring.norm, random.Random(3)
-    monkeypatch.setattr(series.Ring, "norm", lambda ring, f: seen.append(f) or norm(ring, f))
-    torus = small_torus(["0 %x" % rng.randrange(1 << 30) for _ in range(20)], "1 0 0 1e-9")
-    ring = series.Ring(series.Box(torus.norm, 20, 0), Fraction(9, 8), 24)
-    found = tori.Residual(torus, ring, 20)
-    (re, im), = seen[-1].entries
-    (_, u), = found.u.entries
-    off, w = mp.mpf(0), mp.pi * (mp.sqrt(5) - 1)
-    for k in range(-20, 21):
-        exact = (2 * mp.cos(k * w) - 2) * u[k + 20] * mp.j
-        off += abs(exact - mp.mpc(re[k + 21], im[k + 21])) * mp.mpf(1.125) ** abs(k) / ring.one
-    assert 0 < off <= found.radius.numerator / mp.mpf(found.radius.denominator)
 
 
 # ---- a piece: what is lost on the way
