@@ -186,8 +186,9 @@ def taylor_width(kernels, extents):
     """The same for the sharper method's Taylor models, several prisms together, sines included."""
     (p, dp), (v, dv) = PARAMETERS, SUCCESSOR
     for n in POINTS:
-        values = [*p, *v, *dp, *dv, *XSTAR, 0, n, 20000]
-        *halves, ns, _ = min((kernels.call("loewner_step", values, 4, 17,
+        patch = kernels.thesis([*map(Fraction, (*p, *v, *dp, *dv, *XSTAR, 0))])
+        values = [*kernels.arguments(patch), n, 20000]
+        *halves, ns, _ = min((kernels.call("waves_step", values, 4, 17,
                                                     arithmetic="double") for _ in range(3)),
                              key=lambda result: result[2])
         yield "Taylor model", "double", n, float(ns), _ratio(halves, extents[n])

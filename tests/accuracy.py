@@ -19,9 +19,10 @@ import mpmath
 from test_bd_trig import boxes, true_range
 from test_bounds import beta_at, grid_maxima
 from test_images import exact_inverse, outside, random_prism
-from test_loewner import displacements, variations
+from test_loewner import draw
 
 import kernels
+from patches import displacements, thesis, variations
 from truth import (CLOSE, cube_of, cube_point, decimal, eigenvalues, exact, list_prism, mp,
                    point_of, rng_for, step, uniform)
 
@@ -214,14 +215,20 @@ TORI = [(0, 0, 0), (1, 0, 0), (0, "-0.25", 0), ("0.2", "0.5", "0.6"), ("1e-9", 0
         (("-1", "1"),) * 3, (("-0.4", "-0.1"), ("0.2", "0.3"), ("-0.7", "-0.5"))]
 LARGE = [(100, -30, 55), ("1e5", "2e4", "-1e5"), ("1e9", "1e9", "1e9"), (0, "1e6", 0)]
 FLAT = [(0, 0, 100)]
+
+
+def prisms(rng):
+    return thesis(draw(rng))
+
+
 def rests(rng, n, dp, **options):
-    yield from (exact(rest / off) for _, measured, bounds in displacements(rng, n)
+    yield from (exact(rest / off) for _, measured, bounds in displacements(rng, n, prisms)
                 for rest, off in zip(bounds[0][:2], measured[0]) if off > 1e-30)
 
 
 def witnesses(rng, n, dp, **options):
     yield from (exact((bound - max(totals)) / abs(max(totals)))
-                for _, bound, totals in variations(rng, n))
+                for _, bound, totals in variations(rng, n, prisms))
 
 
 TOLERANCE = "tolerances, 5e-7 + 1e-12 (2 + 2 (\\|a\\| + \\|b\\| + \\|c\\|))"

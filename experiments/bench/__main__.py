@@ -166,13 +166,14 @@ def steps(repeat):
     a = Fraction("0.166")
     prism = [a, a, 2 * a, Fraction("3.1"), Fraction("2.9"), *[Fraction(1, 10 ** 9)] * 5,
              Fraction("0.858"), Fraction("0.858")]
+    numbers = [kernels.arguments(kernels.thesis([*prism, together])) for together in (1, 0)]
     for most in ("2", "4", "8"):
         os.environ["CONVERSE_LANES"] = most
-        *_, lanes = kernels.call("loewner_step", [*prism, 1, 18, 1], 4, 20)
+        *_, lanes = kernels.call("waves_step", [*numbers[0], 18, 1], 4, 20)
         print("nanoseconds per orbit step, %d prisms at once: "
               "%.0f with one parameter, %.0f with three" % (lanes, *(
-                  min(kernels.call("loewner_step", [*prism, together, 18, 20000], 4, 20)[2]
-                      for _ in range(repeat)) for together in (1, 0))))
+                  min(kernels.call("waves_step", [*each, 18, 20000], 4, 20)[2]
+                      for _ in range(repeat)) for each in numbers)))
     del os.environ["CONVERSE_LANES"]
     print("six sines in plain doubles: %.0f" % min(
         kernels.call("double_sincos_ns", [3, 300000], 1, 20)[0] for _ in range(repeat)))

@@ -2,6 +2,8 @@
 build.py builds."""
 
 import math
+from itertools import chain
+from types import SimpleNamespace
 from decimal import Decimal
 from fractions import Fraction
 from importlib.machinery import ExtensionFileLoader
@@ -80,6 +82,30 @@ def call(name: str, values: Sequence[Number], nout: int, dp: int, arithmetic: st
         raise ValueError("%s: %s" % (name, MESSAGES[code]))
     check(code)
     return [Fraction(Decimal(text)) for text in texts]
+
+
+THESIS = ((1, 0), (0, 1), (1, 1))       # k of the thesis's waves
+
+
+def thesis(prism: Sequence[Fraction]) -> Any:
+    """The patch of centres and half-widths of a, b, c, v0, v1; x*; do a, b, c move together?
+
+    A patch has waves (*k, phase in radians, amplitude, three parts), centre and half-width of each
+    v, the frame row by row, x*, three shifts of each v, and the number of its parameters.
+    """
+    centre, half, star, together = prism[:5], prism[5:10], [*prism[10:12]], prism[12]
+    waves = [(*k, Fraction(0), p, *(h * (m == (0 if together else i)) for m in range(3)))
+             for i, (k, p, h) in enumerate(zip(THESIS, centre, half))]
+    return SimpleNamespace(waves=waves, parameters=1 if together else 3, centre=centre[3:],
+                           half=half[3:], frame=(1, 0, 0, 1), xstar=star,
+                           shifts=[[Fraction(0)] * 3] * 2)
+
+
+def arguments(patch: Any) -> List[Number]:
+    """The patch as the routines of any waves take it."""
+    return [len(patch.waves), patch.parameters, *chain(*patch.waves),
+            *chain(*zip(patch.centre, patch.half)), *patch.frame, *patch.xstar,
+            *chain(*patch.shifts)]
 
 
 def turns(upper: Number, lower: Number) -> Fraction:

@@ -8,7 +8,7 @@
 #include "search/search.h"
 #include "thesis/unit.h"
 
-enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 1027 };
+enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 1079 };
 
 int asks_for(const question *q, const shape *shape)
 {

@@ -1,9 +1,8 @@
 /* loewner.c - the routines of csrc/loewner.  All take doubles only.
 
-   Those of the thesis's waves begin with BOX numbers: centres and half-widths of a, b, c, v0, v1
-   (as set_patch says), x* and together (0 or 1).  Those of any waves begin with the numbers of
-   waves, at most 4, and of parameters; of each wave k, phase in radians, amplitude and three parts;
-   centre and half-width of each angle, the frame, x*, and three shifts of each angle. */
+   They begin with a problem: the numbers of waves, at most 4, and of parameters; of each wave k,
+   phase in radians, amplitude and three parts; centre and half-width of each angle, the frame, x*,
+   and three shifts of each angle. */
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -11,16 +10,15 @@
 #include "console.h"
 #include "hooks.h"
 
-enum { BOX = 13, WAVE = 5, MOST_SHOWN = 4 };        /* numbers of a wave; waves of a problem */
-enum { SITES = 60 };                                    /* no point of an orbit is further */
-enum { SITE = 79, SHOWN = 13, ANY_SITE = 83, ANY_SHOWN = 11 };
+enum { WAVE = 5, MOST_SHOWN = 4 };      /* numbers of a wave; waves of a problem */
+enum { SITES = 60 };                    /* no point of an orbit is further */
+enum { SITE = 83, SHOWN = 13, CELL = 55 };
 enum { MOST_MORE = 10, MOST_OUT = SITE * SHOWN };
 
 /* What a routine is asked: the numbers after those of the problem. */
 typedef struct {
     loewner *w;
     double more[MOST_MORE];
-    int together, any; /* any: angles of waves of any kind, or 0 */
 } request;
 
 typedef int routine(const request *r, double y[]); /* 0: it cannot be done */
@@ -53,9 +51,10 @@ static void look(const loewner *w, double n, known_point *p)
 /* The orbit of the root's prism from point n or 0 to point 0 or n. */
 static int follow_to(loewner *w, double n) { return follow(w, fmin(n, 0.0), fmax(n, 0.0)); }
 
-/* What is known of a point, of so many slots: returns where it ends. */
-static double *show(double *y, const known_point *p, int slots)
+/* What is known of a point: returns where it ends. */
+static double *show(double *y, const known_point *p)
 {
+    enum { slots = 2 + MOST_SHOWN };
     double lin[2][5], quad[2][15];
     const struct {
         const double *from;
@@ -91,31 +90,6 @@ static double *show(double *y, const known_point *p, int slots)
     return y;
 }
 
-/* The slot of a wave of the thesis, j = 0, 1, 2: (1, 0), (0, 1), (1, 1); -1 where its amplitude is
-   0, as an engine has only waves that are there. */
-static int slot_of(const loewner *w, int j)
-{
-    for (int i = 2; i < w->waves; i++)
-        if (w->k[i][0] == (j != 1) && w->k[i][1] == (j != 0))
-            return i;
-    return -1;
-}
-
-/* Puts the bounds along the thesis's waves behind those of the two coordinates, in their order.  A
-   wave that is not there has those of its coordinate, or of (1, 1) their sums. */
-static void look_at_thesis(const loewner *w, double n, known_point *p)
-{
-    look(w, n, p);
-    double *const bounds[] = { p->lin_bound, p->quad_bound, p->nonlin_bound, p->rad };
-    for (size_t b = 0; b < sizeof bounds / sizeof *bounds; b++) {
-        double *const x = bounds[b], found[3] = { x[0], x[1], x[0] + x[1] };
-        for (int j = 0; j < 3; j++)
-            if (slot_of(w, j) >= 0)
-                found[j] = x[slot_of(w, j)];
-        memcpy(x + 2, found, sizeof found);
-    }
-}
-
 static cv_cell cell_of(const request *r)
 {
     cv_cell cell = { { 0 }, { 0 }, 0 };
@@ -136,34 +110,11 @@ static void show_x1(const loewner_cell *prism, double upper[2], double lower[2])
     }
 }
 
-/* Index and cuts of five axes -> upper halves of the centre and widths of v0, v1; p, h and err_amp
-   of a, b, c; l; B at the corners of the parameters (together: at two), the lower end of a first;
-   lower halves of the centre, p_low. */
-static int k_cell(const request *r, double y[])
-{
-    const cv_cell cell = cell_of(r);
-    loewner_cell prism;
-    const int good = loewner_prism(r->w, &cell, &prism);
-
-    show_x1(&prism, y, y + 22);
-    memcpy(y + 2, prism.width, 2 * sizeof *prism.width);
-    for (int j = 0; j < 3; j++) {
-        const int slot = slot_of(r->w, j);
-        if (slot < 0)
-            continue;
-        y[4 + j] = prism.p[slot];
-        y[24 + j] = prism.p_low[slot];
-        y[7 + j] = prism.part[slot][r->together ? 0 : j];
-        y[10 + j] = prism.err_amp[slot];
-    }
-    y[13] = prism.l;
-    memcpy(y + 14, r->w->corner, sizeof r->w->corner);
-    return good;
-}
-
 /* Index and cuts of five axes -> upper halves of x_1, widths of v0, v1, three shifts of each, how
-   many columns the prisms have, would a cut of each axis help, and the lower halves. */
-static int k_shifted(const request *r, double y[])
+   many columns the prisms have, would a cut of each axis help, and the lower halves; of 4 waves that
+   are there p, p_low, err_amp, and three parts each; l; B at the corners of the parameters, the
+   lower end of the first parameter first. */
+static int k_cell(const request *r, double y[])
 {
     const cv_cell cell = cell_of(r);
     loewner_cell prism;
@@ -175,17 +126,15 @@ static int k_shifted(const request *r, double y[])
     y[10] = r->w->columns;
     for (int axis = 0; axis < 5; axis++)
         y[11 + axis] = cut_helps(r->w, &cell, axis);
-    return good;
-}
-
-/* n -> what k_sites tells of point n. */
-static int k_orbit(const request *r, double y[])
-{
-    known_point p;
-    const int good = follow_to(r->w, r->more[0]);
-
-    look_at_thesis(r->w, r->more[0], &p);
-    show(y, &p, 5);
+    y += 18;
+    for (int slot = 2, j = 0; slot < r->w->waves && j < MOST_SHOWN; slot++, j++) {
+        y[j] = prism.p[slot];
+        y[MOST_SHOWN + j] = prism.p_low[slot];
+        y[2 * MOST_SHOWN + j] = prism.err_amp[slot];
+        memcpy(y + (3 + j) * MOST_SHOWN, prism.part[slot], PARAMETERS * sizeof *y);
+    }
+    y[7 * MOST_SHOWN] = prism.l;
+    memcpy(y + 7 * MOST_SHOWN + 1, r->w->corner, sizeof r->w->corner);
     return good;
 }
 
@@ -200,7 +149,7 @@ static int k_step(const request *r, double y[])
 
     for (int j = 0; j < (int)repeat; j++)
         good = follow_to(r->w, n);
-    look_at_thesis(r->w, n, &p);
+    look(r->w, n, &p);
     memcpy(y, p.rad, 2 * sizeof *y);
     y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0) /
            fmax(fabs(n), 1.0) / r->w->engine->lanes;
@@ -228,21 +177,21 @@ static int bound_orbit(const request *r, int signs, double y[])
    roundings, with multipliers that are off; 3: of vectors that are 2^-300 times as long. */
 static int k_bound(const request *r, double y[]) { return bound_orbit(r, (int)r->more[2], y); }
 
-/* s, t -> of each point of that orbit, at most 13 (11 for any waves, with the reaches along the
-   coordinates and 4 waves): upper halves of 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2
-   rests, for the coordinates and 3 waves the reach of columns, bows, all but the columns, and all;
-   residual, force, beta, d, err_beta, mu, and the lower halves of the coordinates. */
+/* s, t, signs -> of each point of that orbit, at most 13: upper halves of 2 coordinates, 2 rows of
+   5 columns, 2 bows of 15, 2 rests; for the coordinates and 4 waves the reach of columns, bows, all
+   but the columns, and all; residual, force, beta, d, err_beta, mu, and the lower halves of the
+   coordinates. */
 static int k_sites(const request *r, double y[])
 {
     double unused[5 + 2 * SITES] = { 0 }, *end = y;
-    const int good = bound_orbit(r, r->any ? 1 : (int)r->more[2], unused);
+    const int good = bound_orbit(r, (int)r->more[2], unused);
 
-    for (int j = 0; j < (r->any ? ANY_SHOWN : SHOWN); j++) {
+    for (int j = 0; j < SHOWN; j++) {
         known_point p;
         memset(&p, 0, sizeof p);
         if (r->more[0] + j <= fmax(r->more[1], 1.0))
-            (r->any ? look : look_at_thesis)(r->w, r->more[0] + j, &p);
-        end = show(end, &p, r->any ? 2 + MOST_SHOWN : 5);
+            look(r->w, r->more[0] + j, &p);
+        end = show(end, &p);
     }
     return good;
 }
@@ -282,64 +231,35 @@ static int k_largest(const request *r, double y[]) /* B */
     return 1;
 }
 
-/* any: of any waves, of so many angles; bounds: with those over the torus, which take most of the
-   time, where 0 takes
-   any_largest for them; first, others: what the absolute value of
-   the first of the further numbers, and of the others, must be below. */
+/* angles: of the waves; bounds: with those over the torus, which take most of the time, where 0
+   takes any_largest for them; first, others: what the absolute value of the first of the further
+   numbers, and of the others, must be below. */
 typedef struct {
     const char *name;
-    int more, nout, any, bounds;
+    int more, nout, angles, bounds;
     double first, others;
     routine *run;
 } row;
 
 static const row kernels[] = {
-    { "loewner_cell", 10, 27, 0, 1, 0x1p60, 0x1p60, k_cell },
-    { "loewner_orbit", 1, SITE, 0, 0, SITES, SITES, k_orbit },
-    { "loewner_step", 2, 4, 0, 0, SITES, 1e9, k_step },
-    { "loewner_bound", 3, 5 + 2 * SITES, 0, 0, SITES, SITES, k_bound },
-    { "loewner_sites", 3, SITE * SHOWN, 0, 0, SITES, SITES, k_sites },
     { "waves_bound", 3, 5 + 2 * SITES, 2, 0, SITES, SITES, k_bound },
     { "waves_bound_1", 3, 5 + SITES, 1, 0, SITES, SITES, k_bound },
     { "waves_bound_3", 3, 5 + 3 * SITES, 3, 0, SITES, SITES, k_bound },
-    { "waves_sites", 2, ANY_SITE * ANY_SHOWN, 2, 0, SITES, SITES, k_sites },
-    { "waves_cell", 10, 18, 2, 0, 0x1p60, 0x1p60, k_shifted },
-    { "loewner_sincos", 2, 8, 0, 0, 0x1p33, 0x1p33, k_sincos },
-    { "loewner_pull", 6, 4, 0, 0, 0x1p33, 0x1p33, k_pull },
-    { "loewner_sum", 2, 1, 0, 0, 0x1p33, 0x1p33, k_sum },
+    { "waves_sites", 3, SITE * SHOWN, 2, 0, SITES, SITES, k_sites },
+    { "waves_step", 2, 4, 2, 0, SITES, 1e9, k_step },
+    { "waves_cell", 10, CELL, 2, 0, 0x1p60, 0x1p60, k_cell },
+    { "waves_cell_of_l", 10, CELL, 2, 1, 0x1p60, 0x1p60, k_cell },
+    { "waves_sincos", 2, 8, 2, 0, 0x1p33, 0x1p33, k_sincos },
+    { "waves_pull", 6, 4, 2, 0, 0x1p33, 0x1p33, k_pull },
+    { "waves_sum", 2, 1, 2, 0, 0x1p33, 0x1p33, k_sum },
     { "waves_largest", 0, 1, 2, 1, SITES, SITES, k_largest },
     { "waves_largest_3", 0, 1, 3, 1, SITES, SITES, k_largest },
 };
 
 /* ---- the problem, whose numbers are borrowed to read */
 
-/* The thesis's waves. */
-static void set_patch(patch *b, apm_t in[], int together, const apm_t zero)
-{
-    memset(b, 0, sizeof *b);
-    b->n_angles = 2;
-    b->n_waves = 3;
-    b->n_parameters = together ? 1 : 3;
-    b->frame[0][0] = b->frame[1][1] = b->frame[2][2] = 1;
-    for (int i = 0; i < 3; i++) {
-        b->k[i][0] = i != 1;
-        b->k[i][1] = i != 0;
-        *b->phase[i] = *zero;
-        *b->amplitude[i] = *in[i];
-        for (int m = 0; m < b->n_parameters; m++)
-            *b->part[i][m] = together || m == i ? *in[5 + i] : *zero;
-    }
-    for (int i = 0; i < 2; i++) {
-        *b->angle[i] = *in[3 + i];
-        *b->half[i] = *in[8 + i];
-        for (int m = 0; m < b->n_parameters; m++)
-            *b->shift[i][m] = *zero;
-        *b->xstar[i] = *in[10 + i];
-    }
-}
-
-/* Any waves of so many angles, and as many further numbers.  0: the arguments are no patch. */
-static int set_any(patch *b, const question *q, int angles, int more)
+/* So many further numbers come after the patch.  0: the arguments are none. */
+static int set_patch(patch *b, const question *q, int angles, int more)
 {
     apm_t *const in = q->in;
     const int waves = q->nin < 2 ? 0 : (int)apm_get_d(in[0]);
@@ -416,28 +336,17 @@ int loewner_answer(const question *q)
     const row *kernel = kernels, *const end = kernels + sizeof kernels / sizeof *kernels;
     request r = { 0 };
     patch problem;
-    apm_t zero;
-    int status;
 
     while (kernel < end && strcmp(q->name, kernel->name) != 0)
         kernel++;
     if (kernel == end)
         return NOT_MINE;
-    r.any = kernel->any;
-    if (q->nout != kernel->nout ||
-        (r.any ? !set_any(&problem, q, kernel->any, kernel->more) : q->nin != BOX + kernel->more))
+    if (q->nout != kernel->nout || !set_patch(&problem, q, kernel->angles, kernel->more))
         return CV_EARGUMENT;
     for (int j = 0; j < kernel->more; j++) {
         r.more[j] = apm_nearest_d(q->in[q->nin - kernel->more + j]);
         if (!(fabs(r.more[j]) < (j == 0 ? kernel->first : kernel->others)))
             return CV_EARITHMETIC;
     }
-    apm_init(zero);
-    if (!r.any) {
-        r.together = apm_sgn(q->in[BOX - 1]) != 0;
-        set_patch(&problem, q->in, r.together, zero);
-    }
-    status = run(kernel, &r, &problem, q);
-    apm_clear(zero);
-    return status;
+    return run(kernel, &r, &problem, q);
 }

@@ -14,10 +14,10 @@ from converse.model.region import reduced
 from converse.prover.native import Search, Task, grow
 
 import kernels
-from truth import TORTURE, mp, rng_for
+from patches import arguments, variations
+from truth import TORTURE, rng_for
 
 CASES = 300 * TORTURE
-SITES = 60
 FRAMES = {1: [(1,), (-2,)],
           3: [(1, 0, 0, 0, 1, 0, 0, 0, 1), (1, 1, 0, 1, -1, 1, 1, 0, -1),
               (2, 1, 0, 0, 1, -1, 1, 0, 1)]}
@@ -39,51 +39,18 @@ def draw(rng, n):
         return rng.choice([0.0, 10.0 ** rng.uniform(-9, -2) * size])
 
     def wave():
-        return rng.choice(kinds), *map(Fraction, (
+        return *rng.choice(kinds), *map(Fraction, (
             rng.choice([0.0, rng.uniform(0, 6)]), size * rng.uniform(-1, 1),
             *(part() if m < parameters else 0.0 for m in range(3))))
 
     return SimpleNamespace(
-        n=n, waves=[wave() for _ in range(rng.randrange(1, 5))], parameters=parameters,
+        waves=[wave() for _ in range(rng.randrange(1, 5))], parameters=parameters,
         frame=rng.choice(FRAMES[n]),
         centre=[Fraction(rng.uniform(-4, 4)) for _ in range(n)],
         half=[Fraction(rng.choice([0.0, 10.0 ** rng.uniform(-9, -1.5)])) for _ in range(n)],
         xstar=[Fraction(rng.uniform(-4, 4)) for _ in range(n)],
         shifts=[[Fraction(rng.choice([0.0, 1e-3])) if m < parameters else Fraction(0)
                  for m in range(3)] for _ in range(n)])
-
-
-def arguments(patch):
-    return [len(patch.waves), patch.parameters,
-            *(x for k, *numbers in patch.waves for x in (*k, *numbers)),
-            *(x for pair in zip(patch.centre, patch.half) for x in pair),
-            *patch.frame, *patch.xstar, *itertools.chain(*patch.shifts)]
-
-
-def variation(rng, patch, n, first, l, s, t):
-    """Q of vectors n along the orbit of a random point of the patch, often at its edge."""
-    e = [Fraction(rng.choice([-1, 1, 0, rng.uniform(-1, 1)])) for _ in range(patch.n + 3)]
-    p = [mp(w[2] + sum(x * g for x, g in zip(e[patch.n:], w[3:]))) for w in patch.waves]
-    v = [c + h * x + sum(map(Fraction.__mul__, row, e[patch.n:]))
-         for c, h, x, row in zip(patch.centre, patch.half, e, patch.shifts)]
-    x = {0: [*map(mp, patch.xstar)],
-         1: [mp(sum(f * y for f, y in zip(patch.frame[patch.n * i:], v))) for i in range(patch.n)]}
-
-    def angle(w, here):
-        return sum(k * y for k, y in zip(w[0], here)) + mp(w[1])
-
-    for j, here, before in (*((j + 1, j, j - 1) for j in range(1, t)),
-                            *((j - 1, j, j + 1) for j in range(0, s, -1))):
-        force = [q * mpmath.cos(angle(w, x[here])) for w, q in zip(patch.waves, p)]
-        x[j] = [2 * x[here][i] - x[before][i] + sum(w[0][i] * f for w, f in zip(patch.waves, force))
-                for i in range(patch.n)]
-    total = -mp(l) * sum(y * y for u in (n[0], n[-1]) for y in u)
-    total -= 2 * sum(y * z for u, w in zip(n, n[1:]) for y, z in zip(u, w))
-    for j, u in enumerate(n):
-        total += 2 * sum(y * y for y in u) - sum(
-            q * mpmath.sin(angle(w, x[first + j])) * sum(k * y for k, y in zip(w[0], u)) ** 2
-            for w, q in zip(patch.waves, p))
-    return total
 
 
 @pytest.mark.parametrize("rows", [1, 2, 3])
@@ -104,23 +71,13 @@ def test_matrices_above_a_number(rows):
 @pytest.mark.parametrize("angles", [1, 3])
 def test_the_bound_holds(angles):
     """The second variation with the core's vectors, along true orbits, is below its bound."""
-    rng, seen, proved, close = rng_for("bound of %d angles" % angles), 0, 0, 0
-    for _ in range(CASES):
-        patch = draw(rng, angles)
-        s, t = -rng.randrange(0, 5), rng.randrange(1, 6)
-        try:
-            out = kernels.call("waves_bound_%d" % angles,
-                               [*arguments(patch), s, t, rng.randrange(2)], 5 + angles * SITES, 20)
-        except ArithmeticError:
-            continue
-        n = [[*map(mp, out[5 + angles * j:][:angles])] for j in range(int(out[3]))]
-        if n:
-            bound, values = mp(out[0]), [variation(rng, patch, n, int(out[2]), out[1], s, t)
-                                         for _ in range(3)]
-            assert max(values) <= bound, patch
-            seen += 1
-            proved += bound < 0
-            close += bound - max(values) < 0.1 * abs(max(values))
+    seen = proved = close = 0
+    for patch, bound, values in variations(rng_for("bound of %d angles" % angles), CASES,
+                                           lambda rng: draw(rng, angles)):
+        assert max(values) <= bound, patch
+        seen += 1
+        proved += bound < 0
+        close += bound - max(values) < 0.1 * abs(max(values))
     assert seen > CASES // 10 and proved > seen // 10 and close > seen // 10, (seen, proved, close)
 
 
@@ -135,8 +92,8 @@ def test_the_largest_eigenvalue_of_three_angles():
 
         def eigenvalues(x, signs):
             m = 2.0 * np.eye(3)
-            for k, phase, p, *parts in patch.waves:
-                p = float(p) + sum(t * float(g) for t, g in zip(signs, parts))
+            for *k, phase, p, a, b, c in patch.waves:
+                p = float(p) + sum(t * float(g) for t, g in zip(signs, (a, b, c)))
                 m = m - p * np.sin(x @ k + float(phase))[:, None, None] * np.outer(k, k)
             return np.linalg.eigvalsh(m)[:, -1]
 

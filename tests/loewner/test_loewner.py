@@ -27,16 +27,21 @@ from converse.prover.shared import Growth
 from converse.prover.tree import ROOT, cells, complete
 
 import kernels
+import patches
+from patches import (PAIRS, SITES, UNIT, arguments, axes_of, bounded, modulo, orbit, place, radians,
+                     second_variation, thesis)
 from truth import SANITIZED, TORTURE, beta, mp, rng_for, uniform
 
 CASES = (1000 if SANITIZED else 4000) * TORTURE
-SITES = 60                              # of the core's longest vector
-SITE = 79                               # numbers of a point
-BOUND = 5 + 2 * SITES                   # numbers that the kernel loewner_bound returns
-PAIRS = [*itertools.combinations_with_replacement(range(5), 2)]         # the order of the bows
-UNIT = Fraction(1, 2 ** 53)
+BOUND = 5 + 2 * SITES                   # numbers that the kernel waves_bound returns
+CELL = 55                               # numbers of a cell
 WIDEN = 1 + Fraction(1, 2 ** 46)
 TURN = Fraction(710, 113) / 2 ** 64     # a unit of angles, in radians, about
+
+
+def bound_of(prism, s, t, signs):
+    """Bound, l, first site, their number, the roundings, and the vectors."""
+    return kernels.call("waves_bound", [*arguments(thesis(prism)), s, t, signs], BOUND, 20)
 
 
 def draw(rng):
@@ -50,53 +55,6 @@ def draw(rng):
     half += [rng.choice([0.0, 10.0 ** rng.uniform(-13, -1)]) for _ in range(2)]
     star = [rng.choice([rng.uniform(-4, 4), 0.8547]) for _ in range(2)]
     return [*map(Fraction, centre + half + star), Fraction(rng.random() < 0.5)]
-
-
-def inside(rng, prism):
-    """A random exact point of the prism, often at its edge: five symbols and five numbers."""
-    together = prism[12]
-    e = [Fraction(rng.choice([-1, 1, 0, rng.uniform(-1, 1)])) for _ in range(5)]
-    if together:
-        e[1] = e[2] = e[0]
-    return e, [c + h * s for c, h, s in zip(prism[:5], prism[5:10], e)]
-
-
-def axes_of(prism):
-    """The axes in which remainders are bounded, of length 1, along k of the wave that bends most
-    and k_perp; and of each wave the sizes of its products with these."""
-    waves = (1, 0), (0, 1), (1, 1)
-    bends = [(abs(p) + h) * sum(k) for k, p, h in zip(waves, prism[:3], prism[5:8])]
-    k = waves[bends.index(max(bends))]
-    length = mpmath.sqrt(sum(k))
-    axes = (k[0] / length, k[1] / length), (-k[1] / length, k[0] / length)
-    return axes, [[abs(i * w[0] + j * w[1]) for i, j in axes] for w in waves]
-
-
-def orbit(point, star, first, last):
-    """The points first..last of the orbit through x*, v, by index."""
-    a, b, c = map(mp, point[:3])
-    x = {0: list(map(mp, star)), 1: list(map(mp, point[3:]))}
-
-    def beyond(here, before):
-        u, v = here
-        w = c * mpmath.cos(u + v)
-        return [2 * u - before[0] + a * mpmath.cos(u) + w,
-                2 * v - before[1] + b * mpmath.cos(v) + w]
-
-    for j in range(2, last + 1):
-        x[j] = beyond(x[j - 1], x[j - 2])
-    for j in range(-1, first - 1, -1):
-        x[j] = beyond(x[j + 1], x[j + 2])
-    return x
-
-
-def radians(upper, lower):
-    """Two angles that the core has as whole numbers."""
-    return [2 * mpmath.pi * mp(kernels.turns(*halves)) for halves in zip(upper, lower)]
-
-
-def modulo(x):
-    return x - 2 * mpmath.pi * mpmath.nint(x / (2 * mpmath.pi))
 
 
 @pytest.fixture(autouse=True)
@@ -124,124 +82,12 @@ def test_sines():
         kernels.call("double_sincos", [2 * 10 ** 6], 2, 10)
 
 
-def displacements(rng, cases):
-    """Yields prism, how far random points of random prisms' orbits are from where columns and bow
-    put them, along the axes of the largest wave, from where the columns do, from the centre's; and
-    the core's bounds of that: for both coordinates and their sum."""
-    for _ in range(cases):
-        prism, n = draw(rng), rng.choice([-1, 1]) * rng.randrange(1, 9)
-        try:
-            out = kernels.call("loewner_orbit", [*prism, n], SITE, 20)
-        except ArithmeticError:
-            continue
-        centre, columns = radians(out[:2], out[77:]), (out[2:7], out[7:12])
-        bows = out[12:27], out[27:42]
-        rest, off, reach = out[42:44], out[56:59], out[61:64]
-        if max(reach) > 3:
-            continue
-        e, point = inside(rng, prism)
-        start = kernels.call("loewner_orbit", [*prism, 1], SITE, 20)
-        symbols = [modulo(mp(v) - x) / mp(k or 1) for v, x, k in zip(
-            point[3:], radians(start[:2], start[77:]), (start[2], start[8]))]
-        assert all(abs(s) <= 1 for s in symbols)
-        symbols += map(mp, e[:3])                       # in the order of the columns
-        x = orbit(point, prism[10:12], min(n, 0), max(n, 1))[n]
-        away = [modulo(y - near) for y, near in zip(x, centre)]
-        axes, _ = axes_of(prism)
-        straight = [sum(mp(k) * s for k, s in zip(row, symbols)) for row in columns]
-        bent = [sum(mp(t) * symbols[k] * symbols[l] for t, (k, l) in zip(row, PAIRS))
-                for row in bows]
-        left = [d - L - T for d, L, T in zip(away, straight, bent)]
-        measured = [[abs(i * left[0] + j * left[1]) for i, j in axes],
-                    [abs(d - L) for d, L in zip(away, straight)], [*map(abs, away)]]
-        measured[1].append(abs(sum(away) - sum(straight)))
-        measured[2].append(abs(sum(away)))
-        yield prism, measured, [[*map(mp, row)] for row in (rest, off, reach)]
-
-
-@pytest.mark.slow
-def test_orbits_stay_within_reach():
-    followed = tight = bowed = 0
-    for prism, measured, bounds in displacements(rng_for("loewner orbits"), CASES // 4):
-        for row, bound in zip(measured, bounds):
-            assert all(x <= y + 1e-35 for x, y in zip(row, bound)), prism   # mpmath rounds, too
-        for i in range(2):
-            followed += 1
-            tight += bounds[0][i] <= 1e-10 or measured[0][i] > 0.02 * bounds[0][i]
-            bowed += bounds[0][i] < 0.01 * measured[1][i]       # the bow tells what columns do not
-    assert followed > CASES // 8 and tight > 0.3 * followed and bowed > 0.02 * followed
-
-
-def second_variation(point, star, n, first, l, s, t):
-    """Q of the vectors n from site first on, along the orbit of an exact point, from s to t."""
-    x = orbit(point, star, s, t)
-    total = -mp(l) * sum(u * u for u in (*n[0], *n[-1]))
-    total -= 2 * sum(u[0] * v[0] + u[1] * v[1] for u, v in zip(n, n[1:]))
-    for k, (u, v) in enumerate(n):
-        p, q, r = beta(*map(mp, point[:3]), *x[first + k])
-        total += p * u * u + 2 * q * u * v + r * v * v
-    return total
-
-
-def bounded(prism, s, t, signs):
-    """The core's bound, and what it is for: l, first site and vectors; None without a witness."""
-    try:
-        out = kernels.call("loewner_bound", [*prism, s, t, signs], BOUND, 20)
-    except ArithmeticError:
-        return None
-    n = [(mp(out[5 + 2 * k]), mp(out[6 + 2 * k])) for k in range(int(out[3]))]
-    return (mp(out[0]), out[1], int(out[2]), n) if n else None
-
-
-def variations(rng, cases):
-    """Yields prism, the core's bound of the second variation with vectors of its own choice, and
-    its true values along the orbits of three random points of the prism."""
-    for _ in range(cases):
-        prism = draw(rng)
-        s, t = -rng.randrange(0, 5), rng.randrange(1, 6)
-        found = bounded(prism, s, t, rng.randrange(2))
-        if found:
-            bound, l, first, n = found
-            yield prism, bound, [second_variation(inside(rng, prism)[1], prism[10:12], n, first, l,
-                                                  s, t) for _ in range(3)]
-
-
-@pytest.mark.slow
-def test_the_bound_holds():
-    """The second variation with the core's vectors, along true orbits, is below its bound."""
-    proved = seen = close = 0
-    for prism, bound, totals in variations(rng_for("loewner bound"), CASES // 4):
-        assert max(totals) <= bound, prism
-        seen += 1
-        proved += bound < 0
-        close += bound - max(totals) < 0.1 * abs(max(totals))
-    assert seen > CASES // 80 and proved > seen // 10 and close > seen // 10
-
-
 def test_no_bound_of_vectors_that_underflow():
     """Underflow is covered where the mass is 1 or more; without that the bound is infinite."""
     prism = [*map(Fraction, ("1", "1", "0", "1.5", "1.5", *"00000", "1.5", "1.5")), Fraction(0)]
-    assert bounded(prism, -1, 2, 1)[0] < 0
+    assert bounded(thesis(prism), -1, 2, 1)[0] < 0
     with pytest.raises(ArithmeticError):
-        kernels.call("loewner_bound", [*prism, -1, 2, 3], BOUND, 20)
-
-
-def quick_variation(point, star, n, first, l, s, t):
-    """second_variation in doubles, a hundred times as fast."""
-    a, b, c, *v = point
-    x = {0: star, 1: v}
-    for j, here, before in (*((j + 1, j, j - 1) for j in range(1, t)),
-                            *((j - 1, j, j + 1) for j in range(0, s, -1))):
-        (u, v), (p, q) = x[here], x[before]
-        w = c * math.cos(u + v)
-        x[j] = 2 * u - p + a * math.cos(u) + w, 2 * v - q + b * math.cos(v) + w
-    total = -l * sum(u * u for u in (*n[0], *n[-1]))
-    total -= 2 * sum(u[0] * v[0] + u[1] * v[1] for u, v in zip(n, n[1:]))
-    for k, (u, v) in enumerate(n):
-        y, z = x[first + k]
-        w = c * math.sin(y + z)
-        total += (2 - a * math.sin(y)) * u * u + (2 - b * math.sin(z)) * v * v - w * (u + v) ** 2
-    return total
+        bound_of(prism, -1, 2, 3)
 
 
 def wide(rng):
@@ -255,17 +101,14 @@ def wide(rng):
     return [*map(Fraction, centre + half + star), Fraction(rng.random() < 0.5)]
 
 
-def climb(rng, prism, value):
+def climb(rng, patch, value):
     """Symbols e of the cube where value is nearly largest: the best corner or random point, and
     upwards from it along one symbol after the other."""
-    axes = [k for k in range(5) if prism[5 + k]]
-    if prism[12]:
-        axes = [*([min(axes)] if axes and axes[0] < 3 else []), *(k for k in axes if k > 2)]
+    axes = [k for k in range(2) if patch.half[k]]
+    axes += [2 + m for m in range(3) if any(w[4 + m] for w in patch.waves)]
 
     def at(e):
         e = dict(zip(axes, e))
-        if prism[12] and axes and axes[0] < 3:
-            e.update(dict.fromkeys(range(3), e[axes[0]]))
         return [e.get(k, 0.0) for k in range(5)]
 
     tries = [*itertools.product((-1.0, 1.0), repeat=len(axes)), [0.0] * len(axes),
@@ -281,25 +124,34 @@ def climb(rng, prism, value):
     return top, at(best)
 
 
+def in_doubles(patch):
+    """The patch with doubles for exact numbers: a hundred times as fast."""
+    return SimpleNamespace(waves=[tuple(map(float, w)) for w in patch.waves], frame=patch.frame,
+                           **{name: [*map(float, getattr(patch, name))]
+                              for name in ("centre", "half", "xstar")}, shifts=[[0.0] * 3] * 2)
+
+
 def worst_points(rng, cases):
     """Yields prism, whether the signs of cubic terms count, the core's bound, the value at the
     centre, and at the worst point that can be found."""
     for _ in range(cases):
-        prism, signs = wide(rng), rng.random() < 0.8
+        patch, signs = thesis(wide(rng)), rng.random() < 0.8
         s, t = -rng.randrange(0, 4), rng.randrange(1, 5)
-        found = bounded(prism, s, t, int(signs))
+        found = bounded(patch, s, t, int(signs))
         if not found:
             continue
-        bound, l, first, n = found
-        star, vectors = [*map(float, prism[10:12])], [tuple(map(float, v)) for v in n]
-        centre, half = [*map(float, prism[:5])], [*map(float, prism[5:10])]
-        top, e = climb(rng, prism, lambda e: quick_variation(
-            [c + h * x for c, h, x in zip(centre, half, e)], star, vectors, first, float(l), s, t))
-        exact = [[c + h * Fraction(x) for c, h, x in zip(prism[:5], prism[5:10], row)]
-                 for row in ([0] * 5, e)]
-        values = [second_variation(point, prism[10:12], n, first, l, s, t) for point in exact]
+        bound, l, n = found
+
+        def value(e, patch=patch, n=n, l=l, s=s, t=t, number=mp):
+            p, x1 = place(patch, e)
+            return second_variation(patch, p, orbit(patch, p, x1, s, t, number), n, l, number)
+
+        quick = in_doubles(patch)
+        near = {j: [*map(float, v)] for j, v in n.items()}
+        top, e = climb(rng, patch, lambda e: value(e, quick, near, number=float))
+        values = [value([*map(Fraction, e)]) for e in ([0] * 5, e)]
         assert abs(values[1] - top) < 1e-9 * (1 + abs(top))
-        yield prism, signs, bound, values[0], values[1]
+        yield patch, signs, bound, *values
 
 
 def test_the_bound_is_tight():
@@ -365,11 +217,14 @@ def cell_margins(rng, cases):
     of random cells and their l, and asserts that B at the corners of the root is near the truth."""
     for _ in range(cases):
         centre, half, together, index, cuts = random_cell(rng)
-        out = kernels.call("loewner_cell", [*centre, *half, 0, 0, together, *index, *cuts], 27,
-                           1080)
-        err_amp, l, corners = out[10:13], out[13], out[14:22]
-        found = [*map(mp, map(Fraction.__add__, out[4:7], out[24:])), *radians(out[:2], out[22:])]
-        wide = [*map(Fraction.__add__, out[7:10], err_amp), *out[2:4]]
+        patch = thesis([*centre, *half, 0, 0, together])
+        out = kernels.call("waves_cell_of_l", [*arguments(patch), *index, *cuts], CELL, 1080)
+        p, p_low, err_amp = [along_waves(patch, out[18 + 4 * j:22 + 4 * j], 0)
+                                     for j in range(3)]
+        parts = along_waves(patch, [max(map(abs, out[30 + 4 * j:33 + 4 * j])) for j in range(4)], 0)
+        l, corners = out[46], out[47:]
+        found = [*map(mp, map(Fraction.__add__, p, p_low)), *radians(out[:2], out[16:18])]
+        wide = [*map(Fraction.__add__, parts, err_amp), *out[2:4]]
         part = [Fraction(1, 2 ** k) for k in cuts]
         slack = [*err_amp, *(16 * TURN + h * part[k] / 2 ** 49 for k, h in enumerate(half[3:]))]
         at = [(2 * i + 1) * e - 1 for i, e in zip(index, part)]
@@ -398,38 +253,43 @@ def star_margins(rng, cases):
     """The same of x*."""
     for _ in range(cases):
         star = [uniform(rng, -4, 4) for _ in range(2)]
-        out = kernels.call("loewner_orbit", [1, 0, 0, 1, 1, 0, 0, 0, 0, 0, *star, 0, 0], SITE, 20)
-        yield from (("star", abs(modulo(mp(x) - y)), mp(rest))
-                    for x, y, rest in zip(star, radians(out[:2], out[77:]), out[42:]))
+        q = patches.sites(thesis([Fraction(1), *[Fraction(0)] * 2, *[Fraction(1)] * 2,
+                                  *[Fraction(0)] * 5, *star, 0]), 0, 1)[0]
+        yield from (("star", abs(modulo(mp(x) - y)), rest)
+                    for x, y, rest in zip(star, q.x, q.rem))
 
 
 # ---- the margins along orbits: docs/proofs/argument.md says what each must cover
 
+def along_waves(patch, found, *others):
+    """What is found of the waves that there are, in the order of all; of others these numbers, or
+    this one."""
+    found, others = iter(found), [*others] * (3 if len(others) == 1 else 1)
+    return [next(found) if any(w[3:]) else other for w, other in zip(patch.waves, others)]
+
+
 def sites(prism, s, t, signs=1):
     """What the core knows of the points s..t of an orbit; their true sines, cosines and beta."""
-    a, b, c = map(mp, prism[:3])
-    out = [mp(x) for x in kernels.call("loewner_sites", [*prism, s, t, signs], 13 * SITE, 20)]
-    result, (axes, along) = {}, axes_of(prism)
-    for j in range(s, t + 1):
-        y = out[SITE * (j - s):SITE * (j - s + 1)]
-        x = radians(y[:2], y[77:])
-        angles = x[0], x[1], x[0] + x[1]
-        sin, cos = [*map(mpmath.sin, angles)], [*map(mpmath.cos, angles)]
-        rows = y[2:7], y[7:12]
-        bows = y[12:27], y[27:42]
-        there = prism_of(prism)[3]
-        slip = [(4 * UNIT * sum(y[44 + i] for i in k), 4 * UNIT * sum(y[49 + i] for i in k))
-                if there[wave] else (0, 0) for wave, k in enumerate(((0,), (1,), (0, 1)))]
-        result[j] = SimpleNamespace(
-            x=x, lin=[*rows, [p + q for p, q in zip(*rows)]],
-            quad=[*bows, [p + q for p, q in zip(*bows)]],
-            axes=axes, rest=y[42:44], err_dot=slip,
-            rem=[i * y[42] + j * y[43] + sum(e) for (i, j), e in zip(along, slip)],
-            lin_bound=y[46:49], quad_bound=y[51:54], nonlin_bound=y[56:59], rad=y[61:64],
-            reach=y[59:61], residual=y[64:66], force=y[66:68], rounded=y[68:71], d=y[71:74],
-            err_beta=y[74], mu=y[75:77], sin=sin, cos=cos,
-            beta=[2 - a * sin[0] - c * sin[2], -c * sin[2], 2 - b * sin[1] - c * sin[2]])
-    return result
+    patch, (a, b, c) = thesis(prism), map(mp, prism[:3])
+    found = patches.sites(patch, s, t, signs)
+    if found is None:
+        raise ArithmeticError("the orbit cannot be followed")
+    for q in found.values():
+        y = q.x[0], q.x[1], q.x[0] + q.x[1]
+        q.sin, q.cos = sin, _ = [*map(mpmath.sin, y)], [*map(mpmath.cos, y)]
+        q.axes, q.rest, q.reach = axes_of(patch), q.rem, q.rad[:2]
+        q.lin, q.quad = ([*rows, [*map(sum, zip(*rows))]] for rows in (q.lin, q.quad))
+        q.rounded, q.beta = q.beta, [2 - a * sin[0] - c * sin[2], -c * sin[2],
+                                     2 - b * sin[1] - c * sin[2]]
+        q.err_dot = [tuple([4 * UNIT * sum(x * y for x, y in zip(w[:2], bound))
+                            for bound in (q.lin_bound, q.quad_bound)]) * any(w[3:]) or (0, 0)
+                     for w in patch.waves]
+        q.rem = [sum(abs(i * w[0] + j * w[1]) * x for (i, j), x in zip(q.axes, q.rest)) + sum(e)
+                 for w, e in zip(patch.waves, q.err_dot)]
+        for name in "lin_bound", "quad_bound", "nonlin_bound", "rad":
+            x, y, *more = getattr(q, name)
+            setattr(q, name, along_waves(patch, more, x, y, x + y))
+    return found
 
 
 def prism_of(prism):
@@ -660,8 +520,8 @@ def orbit_margins(rng, cases):
     for _ in range(cases):
         prism, s, t = hard(rng), -rng.randrange(0, 6), rng.randrange(1, 7)
         try:
-            out = [mp(x) for x in kernels.call("loewner_bound", [*prism, s, t, 1], BOUND, 20)]
-            plain = mp(kernels.call("loewner_bound", [*prism, s, t, 0], BOUND, 20)[0])
+            out = [mp(x) for x in bound_of(prism, s, t, 1)]
+            plain = mp(bound_of(prism, s, t, 0)[0])
             q = sites(prism, s, t)
         except ArithmeticError:
             continue
@@ -690,7 +550,7 @@ def test_what_is_left_is_computed():
         prism, s, t = draw(rng), -rng.randrange(1, 6), rng.randrange(2, 7)
         prism[5:10] = [x / 64 for x in prism[5:10]]
         try:
-            out = [mp(x) for x in kernels.call("loewner_bound", [*prism, s, t, 2], BOUND, 20)]
+            out = [mp(x) for x in bound_of(prism, s, t, 2)]
             q = sites(prism, s, t, 2)
         except ArithmeticError:
             continue
@@ -735,7 +595,7 @@ def test_the_rounding_of_xstar_where_it_decides():
     point = [Fraction(-math.pi / 2)] * 2
     prism = [*map(Fraction, ("8", "0.3", "0")), point[0] + Fraction("3e-10"), point[1],
              *[Fraction(0)] * 5, *point, Fraction(0)]
-    out, plain = ([mp(x) for x in kernels.call("loewner_bound", [*prism, -11, 1, signs], BOUND, 20)]
+    out, plain = ([mp(x) for x in bound_of(prism, -11, 1, signs)]
                   for signs in (1, 0))
     q = sites(prism, -11, 1)
     assert out[3] == 13 and q[-1].mu[0] * q[0].reach[0] > 1e-9
@@ -766,9 +626,8 @@ def test_roundings_of_an_inverse_where_they_decide():
 def test_factors_are_positive_and_well_conditioned(abc, star, good):
     """Beyond a block d[0] = beta that is not, no orbit is followed."""
     prism = [*map(Fraction, (*abc, "0.3", "0.2", *"00000", *star)), 0]
-    kernels.call("loewner_orbit", [*prism, -1], SITE, 20)
-    with nullcontext() if good else pytest.raises(ArithmeticError):
-        kernels.call("loewner_orbit", [*prism, -2], SITE, 20)
+    assert patches.sites(thesis(prism), -1, 1)
+    assert bool(patches.sites(thesis(prism), -2, 1)) == good
 
 
 # ---- whole proofs
@@ -812,7 +671,8 @@ def test_true_orbits_of_proved_prisms_cannot_minimize(proof):
         f = proof.problem.frame
         point += [f[0] * v0 + f[1] * v1, f[2] * v0 + f[3] * v1]
         length = proof.counts.max_NTsteps
-        x = orbit(point, star, -length, length)
+        zeros = [Fraction(0)] * 5
+        x = orbit(thesis([*point, *zeros, *star, 1]), point[:3], point[3:], -length, length)
         largest = 2 + 53 * mp(point[0]) / mp(LINE)     # B, a little above it
         l = 2 / (largest + mpmath.sqrt(largest ** 2 - 4))
         assert any(falls([beta(*map(mp, point[:3]), *x[j]) for j in range(-s, length + 1)], l)
@@ -994,8 +854,9 @@ def test_any_number_of_lanes_finds_the_same_bits(monkeypatch):
         for lanes in LANES:
             monkeypatch.setenv("CONVERSE_LANES", lanes)
             try:
-                found.append((kernels.call("loewner_sites", [*prism, s, t, 1], SITE * 13, 20),
-                              kernels.call("loewner_bound", [*prism, s, t, 1], BOUND, 20)))
+                found.append((kernels.call("waves_sites", [*arguments(thesis(prism)), s, t, 1],
+                                           patches.SITE * patches.SHOWN, 20),
+                              bound_of(prism, s, t, 1)))
             except ArithmeticError as error:
                 found.append(str(error))
         assert all(each == found[0] for each in found)
@@ -1049,7 +910,8 @@ def test_the_finest_cell():
         assert grown.counts.reasons[2 if cuts <= 50 else 4] == 1
     for cuts in (50, 51):
         with pytest.raises(ArithmeticError) if cuts > 50 else nullcontext():
-            kernels.call("loewner_cell", [1] * 13 + [0] * 5 + [cuts] * 5, 27, 1080)
+            kernels.call("waves_cell", [*arguments(thesis([Fraction(1)] * 13)), *[0] * 5,
+                                        *[cuts] * 5], CELL, 1080)
 
 
 def test_other_parameters():

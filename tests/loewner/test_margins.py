@@ -15,9 +15,10 @@ from types import SimpleNamespace
 import mpmath
 import pytest
 from test_waves import many_digits  # noqa: F401
-from test_waves import FRAMES, SITES, UNIT, angles, arguments, beta, draw, margins, modulo, sites
+from test_waves import FRAMES, beta, draw, margins
 
 import kernels
+from patches import SITES, UNIT, angles, arguments, modulo, sites
 from truth import TORTURE, mp, rng_for, uniform
 
 CASES = 150 * TORTURE

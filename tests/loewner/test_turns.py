@@ -15,6 +15,7 @@ from converse.prover.run import ready
 from converse.prover.settings import Settings
 
 import kernels
+from patches import arguments, thesis
 from truth import mp, rng_for
 
 UNITS = mp(2) ** 62
@@ -35,10 +36,10 @@ def test_sines(lanes, monkeypatch):
     """They are within the 3 units of 2^-62 that turns.h promises, a third of which are needed; the
     double next to a sine and what that lacks are the sine.  The fine sine is within 2^-100."""
     monkeypatch.setenv("CONVERSE_LANES", lanes)
-    worst, finest, prism = [0, 0], 0, [Fraction(x) for x in (1, 0, 0, *[0] * 10)]
+    worst, finest, prism = [0, 0], 0, arguments(thesis([Fraction(1), *[Fraction(0)] * 12]))
     for turns in angles(rng_for("turns")):
         s1, s0, c1, c0, double, lacks, fine, finer = kernels.call(
-            "loewner_sincos", [*prism, turns >> 32, turns & 0xffffffff], 8, 20)
+            "waves_sincos", [*prism, turns >> 32, turns & 0xffffffff], 8, 20)
         s, c = int(s1) << 32 | int(s0), int(c1) << 32 | int(c0)
         y = 2 * mpmath.pi * mp(turns) / 2 ** 64
         for i, (found, true) in enumerate([(s, mpmath.sin(y)), (c, mpmath.cos(y))]):
@@ -56,13 +57,13 @@ def test_what_a_wave_leaves_has_twice_the_digits(lanes, monkeypatch):
     """Within the 2^-95 of bound.c, also where k.n and k.mu cancel."""
     monkeypatch.setenv("CONVERSE_LANES", lanes)
     rng, worst = rng_for("pull"), 0
-    prism = [Fraction(x) for x in ("0.1", "0.2", "0.7", *[0] * 10)]
+    prism = arguments(thesis([Fraction(x) for x in ("0.1", "0.2", "0.7", *[0] * 10)]))
     for turns in [*angles(rng_for("turns"))][::5]:
         n, mu = ([rng.uniform(-1, 1) * 10 ** rng.uniform(0, 8)] * 2 for _ in range(2))
         for x in n, mu:
             x[1] *= -1 - rng.choice([0, 1, 1e-9]) * rng.random()
         high, low, p, p_low = map(mp, kernels.call(
-            "loewner_pull", [*prism, turns >> 32, turns & 0xffffffff, *map(Fraction, n + mu)],
+            "waves_pull", [*prism, turns >> 32, turns & 0xffffffff, *map(Fraction, n + mu)],
             4, 20))
         y, (n0, n1, m0, m1) = 2 * mpmath.pi * mp(turns) / 2 ** 64, map(mp, n + mu)
         true = (p + p_low) * ((m0 + m1) * mpmath.sin(y) + (n0 + n1) ** 2 * mpmath.cos(y))
@@ -74,8 +75,8 @@ def test_what_a_wave_leaves_has_twice_the_digits(lanes, monkeypatch):
 @pytest.mark.parametrize("x", [0.1, 1 / 3])
 def test_long_sums_lose_as_little_as_short_ones(x):
     """32 u of a block of 16 sites, and not 8,000 roundings of the sum of the blocks."""
-    prism = [Fraction(x) for x in (1, 0, 0, *[0] * 10)]
-    found, = kernels.call("loewner_sum", [*prism, 1 << 17, Fraction(x)], 1, 20)
+    prism = arguments(thesis([Fraction(x) for x in (1, *[0] * 12)]))
+    found, = kernels.call("waves_sum", [*prism, 1 << 17, Fraction(x)], 1, 20)
     assert abs(found - Fraction(x) * 2 ** 17) <= 32 * Fraction(1, 2 ** 53) * found
 
 

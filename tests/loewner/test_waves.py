@@ -14,19 +14,15 @@ from converse.prover.native import ffi, lib, native_problem
 from converse.prover.tree import cells
 
 import kernels
+from patches import (MOST, SITES, THESIS, UNIT, angles, arguments, axes_of, displacements, inside,
+                     modulo, radians, sites, variations)
 from truth import SANITIZED, TORTURE, mp, rng_for, uniform
 
 CASES = (500 if SANITIZED else 1000) * TORTURE
-MOST = 4                                # waves of a kernel's potential
-SITE, SHOWN, SITES = 83, 11, 60         # numbers of a point, points, and vectors of a kernel
-PAIRS = [*itertools.combinations_with_replacement(range(5), 2)]         # the order of the bows
+CELL = 55                               # numbers of a cell
 FRAMES = [(1, 0, 0, 1), (1, 0, 0, 1), (1, 1, -1, 0), (2, 1, 1, 1), (0, 1, -1, 3), (1, 1, 1, -1),
           (2, -1, 1, 2), (70, 30, -11, 100)]
 KINDS = [(1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (3, 0), (-1, 2), (5, -7)]
-UNIT = Fraction(1, 2 ** 53)
-THESIS = ((1, 0), (0, 1), (1, 1))
-
-
 def draw(rng, kinds=KINDS, shifts=False):
     """A random patch: k, phase in radians, amplitude and parts of each wave; v0, v1, frame and
     x*; by how much v0 and v1 are shifted by three parameters, if at all."""
@@ -53,81 +49,11 @@ def draw(rng, kinds=KINDS, shifts=False):
     return patch
 
 
-def arguments(patch):
-    """The patch as kernels take it."""
-    angles = [x for pair in zip(patch.centre, patch.half) for x in pair]
-    return [len(patch.waves), patch.parameters, *(x for w in patch.waves for x in w), *angles,
-            *patch.frame, *patch.xstar, *itertools.chain(*patch.shifts)]
-
-
-def inside(rng, patch):
-    """A random exact point of the patch, often at its edge: five symbols, amplitudes, x_1."""
-    e = [Fraction(rng.choice([-1, 1, 0, rng.uniform(-1, 1)])) for _ in range(5)]
-    p = [w[3] + sum(t * g for t, g in zip(e[2:], w[4:])) for w in patch.waves]
-    v = [c + h * s + sum(map(Fraction.__mul__, row, e[2:]))
-         for c, h, s, row in zip(patch.centre, patch.half, e, patch.shifts)]
-    f = patch.frame
-    return e, p, (f[0] * v[0] + f[1] * v[1], f[2] * v[0] + f[3] * v[1])
-
-
-def angles(patch, x):
-    return [k0 * x[0] + k1 * x[1] + mp(phase) for k0, k1, phase, *_ in patch.waves]
-
-
-def orbit(patch, p, v, first, last):
-    """The points first..last of the orbit through x*, v, by index."""
-    x = {0: [*map(mp, patch.xstar)], 1: [*map(mp, v)]}
-    p = [*map(mp, p)]
-
-    def beyond(here, before):
-        force = [q * mpmath.cos(y) for q, y in zip(p, angles(patch, here))]
-        return [2 * here[i] - before[i] + sum(w[i] * f for w, f in zip(patch.waves, force))
-                for i in range(2)]
-
-    for j in range(2, last + 1):
-        x[j] = beyond(x[j - 1], x[j - 2])
-    for j in range(-1, first - 1, -1):
-        x[j] = beyond(x[j + 1], x[j + 2])
-    return x
-
-
 def beta(patch, p, x):
     """2I - V'' as three numbers (00, 01, 11)."""
     s = [mp(q) * mpmath.sin(y) for q, y in zip(p, angles(patch, x))]
     return [(2 if i == j else 0) - sum(f * w[i] * w[j] for w, f in zip(patch.waves, s))
             for i, j in ((0, 0), (0, 1), (1, 1))]
-
-
-def second_variation(patch, p, v, n, first, l, s, t):
-    """Q of the vectors n from site first on, along the orbit of an exact point, from s to t."""
-    x = orbit(patch, p, v, s, t)
-    total = -mp(l) * sum(u * u for u in (*n[0], *n[-1]))
-    total -= 2 * sum(u[0] * v[0] + u[1] * v[1] for u, v in zip(n, n[1:]))
-    for k, (u, v) in enumerate(n):
-        a, b, c = beta(patch, p, x[first + k])
-        total += a * u * u + 2 * b * u * v + c * v * v
-    return total
-
-
-def sites(patch, s, t):
-    """What the core knows of the points s..t of the orbits; None where they cannot be followed."""
-    try:
-        out = kernels.call("waves_sites", [*arguments(patch), s, t], SITE * SHOWN, 20)
-    except ArithmeticError:
-        return None
-    result = {}
-    for j in range(s, t + 1):
-        y = [mp(x) for x in out[SITE * (j - s):SITE * (j - s + 1)]]
-        count = 2 + MOST
-        straight, bowed, off, reach = (y[44 + count * i:44 + count * (i + 1)] for i in range(4))
-        rest = y[44 + 4 * count:]
-        result[j] = SimpleNamespace(
-            x=radians(y[:2], y[81:]), lin=(y[2:7], y[7:12]),
-            quad=(y[12:27], y[27:42]), rem=y[42:44],
-            lin_bound=straight, quad_bound=bowed, nonlin_bound=off, rad=reach,
-            residual=rest[:2], force=rest[2:4],
-            beta=rest[4:7], d=rest[7:10], err_beta=rest[10], mu=rest[11:13])
-    return result
 
 
 @pytest.fixture(autouse=True)
@@ -136,90 +62,33 @@ def many_digits():
         yield
 
 
-def axes_of(patch):
-    """The axes in which remainders are bounded, of length 1: along k of the wave that bends most,
-    and along k_perp."""
-    k0, k1 = max((w for w in patch.waves if any(w[3:])), default=(1, 0, 1, 0), key=lambda w: (
-        abs(w[3]) + sum(map(abs, w[4:]))) * (w[0] ** 2 + w[1] ** 2))[:2]
-    length = mpmath.sqrt(k0 ** 2 + k1 ** 2)
-    return (k0 / length, k1 / length), (-k1 / length, k0 / length)
+def moving(rng):
+    return draw(rng, shifts=True)
 
 
-def radians(upper, lower):
-    """Two angles that the core has as whole numbers."""
-    return [2 * mpmath.pi * mp(kernels.turns(*halves)) for halves in zip(upper, lower)]
-
-
-def modulo(x):
-    return x - 2 * mpmath.pi * mpmath.nint(x / (2 * mpmath.pi))
-
-
-def symbols(first, v, t=()):
-    """Those of v0 and v1 for which the core's first point is v, where the parameters' are t: its
-    sides are a little longer."""
-    (a, b), (c, d) = (row[:2] for row in first.lin)
-    x, y = (modulo(mp(end) - centre - sum(shift * mp(e) for shift, e in zip(row[2:], t)))
-            for end, centre, row in zip(v, first.x, first.lin))
-    result = [(d * x - b * y) / (a * d - b * c), (a * y - c * x) / (a * d - b * c)]
-    assert all(abs(s) <= 1 for s in result)
-    return result
-
-
-@pytest.mark.parametrize("shifts", [False, True])
+@pytest.mark.parametrize("drawn", [draw, moving])
 @pytest.mark.slow
-def test_orbits_stay_within_reach(shifts):
-    rng = rng_for("waves orbits" + " with shifts" * shifts)
-    followed = tight = slanted = 0
-    for _ in range(CASES // 2):
-        patch = draw(rng, shifts=shifts)
-        n = rng.choice([-1, 1]) * rng.randrange(1, 7)
-        found = sites(patch, min(n, 0), max(n, 1))
-        if not found or max(found[n].rad) > 3:
-            continue
-        q, (e, p, v) = found[n], inside(rng, patch)
-        e = symbols(found[1], v, e[2:]) + [*map(mp, e[2:])]
-        away = [modulo(y - near)
-                for y, near in zip(orbit(patch, p, v, min(n, 0), max(n, 1))[n], q.x)]
-        straight = [sum(c * s for c, s in zip(row, e)) for row in q.lin]
-        bent = [sum(t * e[k] * e[l] for t, (k, l) in zip(row, PAIRS)) for row in q.quad]
-        rest = [D - L - T for D, L, T in zip(away, straight, bent)]
-        present = [w[:2] for w in patch.waves if any(w[3:])]
-        for i, (k0, k1) in enumerate([(1, 0), (0, 1), *present]):
-            D, L = k0 * away[0] + k1 * away[1], k0 * straight[0] + k1 * straight[1]
-            assert abs(D) <= q.rad[i] + 1e-35 and abs(D - L) <= q.nonlin_bound[i] + 1e-35, i
-        for (i, j), bound in zip(axes_of(patch), q.rem):
-            left = abs(i * rest[0] + j * rest[1])
+def test_orbits_stay_within_reach(drawn):
+    followed = tight = bowed = slanted = 0
+    for patch, measured, bounds in displacements(rng_for("orbits " + drawn.__name__), CASES // 2,
+                                                 drawn):
+        for row, bound in zip(measured, bounds):
+            assert all(x <= y + 1e-35 for x, y in zip(row, bound)), patch   # mpmath rounds, too
+        for left, bound, off in zip(measured[0], bounds[0], measured[1]):
             followed += 1
-            assert left <= bound + 1e-35, patch
             tight += bound <= 1e-10 or left > 0.01 * bound
+            bowed += bound < 0.01 * off             # the bow tells what columns do not
         slanted += sum(any(w[4:]) for w in patch.waves) > 1 and patch.frame != FRAMES[0]
-    assert followed > CASES // 4 and tight > 0.2 * followed and slanted > CASES // 40
+    assert followed > CASES // 4 and tight > 0.2 * followed and bowed > 0.02 * followed
+    assert slanted > CASES // 40
 
 
-def variations(rng, cases, shifts):
-    """Yields patch, the core's bound, and the true values at three random points."""
-    for _ in range(cases):
-        patch = draw(rng, shifts=shifts)
-        s, t = -rng.randrange(0, 5), rng.randrange(1, 6)
-        try:
-            out = kernels.call("waves_bound", [*arguments(patch), s, t, rng.randrange(2)],
-                               5 + 2 * SITES, 20)
-        except ArithmeticError:
-            continue
-        n = [(mp(out[5 + 2 * k]), mp(out[6 + 2 * k])) for k in range(int(out[3]))]
-        if n:
-            yield patch, mp(out[0]), [
-                second_variation(patch, *inside(rng, patch)[1:], n, int(out[2]), out[1], s, t)
-                for _ in range(3)]
-
-
-@pytest.mark.parametrize("shifts", [False, True])
+@pytest.mark.parametrize("drawn", [draw, moving])
 @pytest.mark.slow
-def test_the_bound_holds(shifts):
+def test_the_bound_holds(drawn):
     """The second variation with the core's vectors, along true orbits, is below its bound."""
     seen = proved = close = 0
-    rng = rng_for("waves bound" + " with shifts" * shifts)
-    for patch, bound, totals in variations(rng, CASES // 2, shifts):
+    for patch, bound, totals in variations(rng_for("bound " + drawn.__name__), CASES // 2, drawn):
         assert max(totals) <= bound, patch
         seen += 1
         proved += bound < 0
@@ -326,7 +195,7 @@ def test_roundings_of_large_shifts_widen_the_sides():
         patch = draw(rng, KINDS[:1])
         patch.frame, patch.parameters, patch.half = FRAMES[0], 3, [Fraction(0)] * 2
         patch.shifts = [[uniform(rng, -6, 6, 30) for _ in range(3)] for _ in range(2)]
-        out = kernels.call("waves_cell", [*arguments(patch), *[0] * 10], 18, 1080)
+        out = kernels.call("waves_cell", [*arguments(patch), *[0] * 10], CELL, 1080)
         for i in range(2):
             off = sum(abs(Fraction(x) - y) for x, y in zip(out[4 + 3 * i:], patch.shifts[i]))
             assert off <= out[2 + i]
@@ -345,12 +214,12 @@ def shifted_cells(rng, cases):
         deep = rng.choice([1, 10, 50])
         cuts = [rng.randrange(deep + 1) for _ in range(5)]
         index = [rng.randrange(1 << k) for k in cuts]
-        out = [*map(Fraction, kernels.call("waves_cell", [*arguments(patch), *index, *cuts], 18,
+        out = [*map(Fraction, kernels.call("waves_cell", [*arguments(patch), *index, *cuts], CELL,
                                            1080))]
         part = [Fraction(1, 1 << k) for k in cuts]
         middle = [(2 * i + 1) * w - 1 for i, w in zip(index, part)]
         for i in range(2):
-            moved, centre = out[4 + 3 * i:7 + 3 * i], radians(out[:2], out[16:])[i]
+            moved, centre = out[4 + 3 * i:7 + 3 * i], radians(out[:2], out[16:18])[i]
             for signs in itertools.product((-1, 1), repeat=4):
                 t = [m + e * w for m, e, w in zip(middle[2:], signs[1:], part[2:])]
                 v = patch.centre[i] + patch.half[i] * (middle[i] + signs[0] * part[i])
@@ -372,7 +241,7 @@ def test_cells_of_a_point_have_the_units_of_its_place():
     """Whose centre, half-width and shifts are 0: 16 units of 2^-64 turns."""
     patch = draw(rng_for("waves off"))
     patch.centre, patch.half, patch.frame = [Fraction(0)] * 2, [Fraction(0)] * 2, FRAMES[0]
-    out = kernels.call("waves_cell", [*arguments(patch), *[0] * 10], 18, 1080)
+    out = kernels.call("waves_cell", [*arguments(patch), *[0] * 10], CELL, 1080)
     for width in map(Fraction, out[2:4]):
         assert abs(width / (16 * Fraction(710, 113) / 2 ** 64) - 1) < Fraction(1, 10 ** 6)
 
@@ -384,7 +253,7 @@ def test_cells_are_wider_by_what_frames_lose(frame):
     for _ in range(10):
         patch, widths = draw(rng, shifts=True), []
         for patch.frame in (1, 0, 0, 1), frame:
-            out = kernels.call("waves_cell", [*arguments(patch), *[0] * 5, *[0] * 5], 18, 1080)
+            out = kernels.call("waves_cell", [*arguments(patch), *[0] * 5, *[0] * 5], CELL, 1080)
             widths.append([*map(Fraction, out[2:4])])
         sizes = [w + sum(map(abs, row)) for w, row in zip(widths[0], patch.shifts)]
         off = [8 * UNIT * (abs(a) * sizes[0] + abs(b) * sizes[1])
@@ -403,7 +272,7 @@ def test_a_parameter_that_only_moves_the_region_counts():
         patch.waves = [(1, 0, *map(Fraction, (0, 1, "0.1", 0, 0)))]
         patch.parameters, patch.frame, patch.half = 3, FRAMES[0], [Fraction(1, 10)] * 2
         patch.shifts[1][1] = Fraction(shift)
-        found = kernels.call("waves_cell", [*arguments(patch), *[0] * 5, *[0] * 3, cuts, 0], 18, 20)
+        found = kernels.call("waves_cell", [*arguments(patch), *[0] * 8, cuts, 0], CELL, 20)
         return int(found[10]), [*map(int, found[11:16])]
 
     assert cell("0", 0) == (3, [1, 1, 1, 0, 0])
