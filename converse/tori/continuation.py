@@ -137,9 +137,9 @@ class Way:
 
     def of_orbit(self, orbits: Orbits, orbit: Orbit,
                  points: Optional[int] = None) -> Union[Found, float]:
-        """The torus at the end of the way on which an orbit lies.  Where there is none, or with
-        `points`, the least error that Newton's method leaves on meshes of so many points; infinity:
-        it fails."""
+        """The torus at the end of the way on which an orbit lies, in modes without which Newton's
+        method stalls: `finished` adds the others.  Where there is none, the least error that is
+        left on meshes of so many points; infinity: Newton's method fails."""
         n, amplitude = self.potential.dimension, self.amplitude(1.0)
         k, c = orbits.series(orbit, self.rotation, REACH[n])
         if n == 2:
@@ -156,18 +156,22 @@ class Way:
             if solved is None or rounds == WEARY:
                 return inf
             u, before = solved[0], min(before, solved[1])
-            if before <= STALLED and points:
-                return 0.0
-            if before <= STALLED:
-                found = self._solved(1.0, self._measured(1.0, mesh, u), u)
+            if before <= (STALLED if points else USEFUL):
+                rough = self._tight(self._measured(1.0, mesh, u))
+                found = self._solved(1.0, rough, rough.u)
                 if isinstance(found, Found):
-                    found = self._solved(1.0, found, found.u, 0.0)
-                return found if isinstance(found, Found) else (
-                    before if found == TOO_LARGE else inf)
+                    return found
             box *= GROWTH[n]
             larger = self.mesh(2 * box)
             u, mesh = mesh.moved(u, larger), larger
         return before
+
+    def finished(self, rough: Found) -> Found:
+        """A torus at the end of the way, with all modes that doubles can tell."""
+        found = self._solved(1.0, rough, rough.u, 0.0)
+        if not isinstance(found, Found):
+            raise self._not_found(rough, found == TOO_LARGE, None)
+        return found
 
     def _framed(self, found):
         """The torus in the frame in which its modes fill the smallest box, chosen once."""
@@ -178,8 +182,13 @@ class Way:
         if frame == self.frame:
             return found
         self.frame = frame
+        return self._tight(found)
+
+    def _tight(self, found):
+        """The torus on the smallest mesh that holds its modes."""
         k = found.mesh.k[:, found.keep]
-        mesh = self.mesh(abs(np.array(frame) @ k).max(1) + 1)
+        mesh = self.mesh((1,) * len(found.mesh.sizes))
+        mesh = self.mesh(abs(mesh.numbers(k)).max(1) + 1)
         return self._measured(found.part, mesh, found.mesh.moved(found.u, mesh))
 
     def _straight(self):

@@ -1,9 +1,10 @@
 """Finds invariant tori, without proof: for one potential, or for all potentials of a range."""
 
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from math import ceil, exp, inf, log, log2
-from typing import Callable, List, Optional, Tuple, Union
+from typing import Callable, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -28,6 +29,7 @@ SMALL = 1 << 15             # Points of the mesh on which the vectors of two ang
 NEAR = 6                    # Rotation vectors are looked for near so many orbits of two angles.
 SMOOTHEST = 4               # Of so many of them a torus is made.
 APART = 3e-4                # Of vectors that differ by less, in turns, the best is tried.
+NEEDED = {1: 1.0, 2: 0.65}  # About this part of the planned modes is left, by the number of angles.
 ROUNDS = 3                  # This often the number of modes is chosen.
 # The lengths of pieces are chosen for DEGREE in sigma; they have LEAST_DEGREE to MOST_DEGREE.
 LEAST_DEGREE, DEGREE, MOST_DEGREE = 4, 21, 26
@@ -36,7 +38,7 @@ LARGEST = 1 << 23           # Points of the mesh times the degree are at most ab
 NARROWEST = 1e-5            # A piece of s is at least about this long.
 ALL = 0.93                  # A piece that could cover this part of the rest takes all of it.
 # The s that farthest() tries.
-RETREAT = Fraction(1), Fraction(7, 8), Fraction(3, 4), Fraction(1, 2), Fraction(0), Fraction(-1, 2)
+RETREAT = Fraction(1), Fraction(15, 16), Fraction(7, 8), Fraction(3, 4), Fraction(1, 2), Fraction(0), Fraction(-1, 2)
 MOST_MARGIN = 1e100         # Coefficients times 2^bits are doubles on their way to integers.
 
 
@@ -115,6 +117,15 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str, N
     return _Pieces(search, way.rotation, margin).cover(found)
 
 
+class _Rough(NamedTuple):
+    """The torus of an orbit, about, and how many modes it will need, about."""
+
+    modes: int
+    way: Way
+    found: Found
+    orbit: Orbit
+
+
 class Search:
     """Looks for tori of a problem, each at the lower end of its range, if it has one."""
 
@@ -189,7 +200,8 @@ class Search:
 
     def _of_its_orbit(self, rotation):
         orbits = self._orbits(self._end())
-        return self._made(orbits, with_rotation(orbits, rotation), rotation, self._end())
+        way, rough = self._made(orbits, with_rotation(orbits, rotation), rotation, self._end())
+        return way, way.finished(rough)
 
     def _made(self, orbits, orbit, rotation, s):
         """The torus of an orbit."""
@@ -216,8 +228,9 @@ class Search:
                 listed = [with_rotation(orbits, each.vector, each)._replace(vector=each.vector)
                           for each in listed[:ENOUGH]]
             try:
-                way, found, orbit = self._best(orbits, listed, s * sign)
-                listed = [orbit]
+                ranked = self._ranked(orbits, listed, s * sign)
+                listed = [each.orbit for each in ranked[:1]] or listed
+                way, found = self._first(ranked, s * sign)
                 return _single(found, way, MARGIN)
             except (NotFound, TimeIsUp) as error:
                 failure = error
@@ -233,7 +246,7 @@ class Search:
         orbits = self._orbits(s)
         seen, listed = self._regular(orbits, s)
         try:
-            return self._best(orbits, listed, s)[:2]
+            return self._first(self._ranked(orbits, listed, s), s)
         except NotFound:
             raise NotFound("at %s %s; a rotation vector may be given (converse-tori --rotation)" % (
                 place(self.at(s), self.amplitude(s)), "%d regular orbits are seen, but no torus "
@@ -254,28 +267,36 @@ class Search:
         self.tell("looking for rotation vectors", CHOOSING * len(seen[:NEAR]))
 
         def error(orbit):
-            return self._at(orbit.vector, s).of_orbit(orbits, orbit, SMALL)
+            found = self._at(orbit.vector, s).of_orbit(orbits, orbit, SMALL)
+            return 0.0 if isinstance(found, Found) else found
         return seen, apart(sorted(near_vectors(orbits, seen[:NEAR]), key=error), APART)[:SMOOTHEST]
 
-    def _best(self, orbits: Orbits, listed: List[Orbit],
-              s: Union[Fraction, int]) -> Tuple[Way, Found, Orbit]:
-        """Of the tori of the first orbits that have one the one that needs the fewest modes."""
-        made: List[Tuple[Way, Found, Orbit]] = []
+    def _ranked(self, orbits: Orbits, listed: List[Orbit], s: Union[Fraction, int]) -> List[_Rough]:
+        """Tori of the first orbits that have one.  Those that need the fewest modes come first."""
+        made: List[_Rough] = []
         for orbit in listed:
             assert orbit.vector is not None
             try:
                 self.tell("looking for a torus near (%s)" % ", ".join(
                     "%.6f" % w for w in orbit.rotation), PLANNING[self.potential.dimension])
-                made.append((*self._made(orbits, orbit, orbit.vector, s), orbit))
+                way, rough = self._made(orbits, orbit, orbit.vector, s)
+                made.append(_Rough(plan(rough).modes(rough.mesh), way, rough, orbit))
             except (NotFound, TimeIsUp) as error:
                 if isinstance(error, TimeIsUp) and not made:
                     raise
             if len(made) == ENOUGH:
                 break
-        if not made:
-            raise NotFound("no torus was made of the regular orbits", 0.0,
-                           self.amplitude(s).tolist())
-        return min(made, key=lambda each: plan(each[1]).modes(each[1].mesh))
+        return sorted(made, key=lambda each: each.modes)
+
+    def _first(self, ranked: List[_Rough], s: Union[Fraction, int]) -> Tuple[Way, Found]:
+        """The first torus with all modes that doubles can tell."""
+        n = self.potential.dimension
+        for modes, way, rough, _ in ranked:
+            self.tell("looking for a torus of about %d modes" % modes, 0.0,
+                      VERIFYING[n] * NEEDED[n] * modes)
+            with suppress(NotFound):
+                return way, way.finished(rough)
+        raise NotFound("no torus was made of the regular orbits", 0.0, self.amplitude(s).tolist())
 
 
 def _doubles(numbers):
@@ -302,7 +323,7 @@ def _single(found, way, margin):
     """The torus of one potential.  How many modes it needs is known from its decay in doubles, and
     then from the error that is left.  Near break-up the largest modes stand far apart.  So the next
     mesh is larger."""
-    more, torus, points = 1.0, None, 0
+    n, more, torus, points = way.potential.dimension, 1.0, None, 0
     for turn in range(1, ROUNDS + 1):
         aim = plan(found, margin, more)
         while (mesh := aim.mesh(found.mesh)).points <= points:
@@ -316,7 +337,7 @@ def _single(found, way, margin):
             if torus is None else taken(modes, bits, torus)
         way.tell("refining a torus of %d modes" % len(modes.at),
                  SINGLE * balls(mesh.points, bits + SPARE_BITS),
-                 VERIFYING[way.potential.dimension] * len(modes.at))
+                 VERIFYING[n] * NEEDED[n] * aim.modes(mesh))
         torus, ratio = refined(
             Torus(way.potential, None, way.rotation, bits, modes.k.T, numbers, aim.strip), modes,
             aim, margin, turn == ROUNDS)
