@@ -42,9 +42,9 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # Files that `make check` leaves out, except tests marked quick.
 SLOW = ("check/test_check", "check/test_fuzz", "commands/test_orbits_cli", "formal/",
-        "project/test_chart", "project/test_install", "project/test_mutate",
-        "project/test_numbers", "project/test_sides", "project/test_types",
-        "project/test_where_methods_fail", "prover/test_parallel", "storage/")
+        "project/test_install", "project/test_mutate", "project/test_numbers",
+        "project/test_types", "project/test_where_methods_fail", "prover/test_parallel",
+        "storage/test_faults", "storage/test_signals")
 
 # Of the cases of one test `make check` takes 3 at most, the first, the last and one between.
 QUICK_CASES = 3

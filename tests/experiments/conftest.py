@@ -1,4 +1,4 @@
-"""Tests of packages in experiments/, which no other code uses: `make torture` runs them."""
+"""Tests of experiments/, which no other code uses: `make torture` runs them."""
 
 from truth import TORTURE
 

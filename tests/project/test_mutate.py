@@ -6,8 +6,11 @@ import re
 import runpy
 import subprocess
 
+import pytest
 from conftest import ROOT
 from mutate.operators import OPERATORS, mutants
+
+from truth import TORTURE
 
 TOOL = runpy.run_path(str(ROOT / "tests" / "mutate" / "__main__.py"))
 SMALL = """
@@ -86,6 +89,7 @@ def test_samples():
         place.key for place in found)
 
 
+@pytest.mark.skipif(TORTURE <= 1, reason="compiles a core; make torture has it")
 def test_a_fatal_mistake_is_caught(tmp_path, monkeypatch):
     """And nothing fails with the unchanged core, so that it is the mistake that is noticed; a test
     that fails anyhow says nothing.  What the user asks of pytest is not asked of these tests."""

@@ -170,7 +170,7 @@ def test_fewer_places():
 def test_towards_the_wall():
     head, *table = columns("limits.md", "epsilon")
     assert head == ("epsilon", "prisms", "deepest cut")
-    for epsilon, prisms, cuts in table:
+    for epsilon, prisms, cuts in table[:None if TORTURE > 1 else -1]:    # the last takes longest
         counts = prove(chart.on_line(epsilon), digits=20).counts
         assert (counts.proved, counts.most_cuts) == (number(prisms), number(cuts))
     assert missing("limits.md", sharper(Problem(MuldoonMap("0.2", "0.35", "0.5"))).proved) == []
@@ -189,10 +189,10 @@ def test_the_pieces_of_the_checker(tmp_path, capsys):
 # ---- what orbits.prove finds
 
 def test_how_far_down_orbits_are_proved():
-    """The three of the table that take seconds, each followed from eps 0."""
+    """The first of the table, where little is asked for, each followed from eps 0."""
     head, *table = columns("proved-orbits.md", "trig (1432, 1897)/2513, eps")
     assert head[1:] == ("second variation at least", "smaller exponent", "places, seconds")
-    for eps, least, exponent, places in table[:3]:
+    for eps, least, exponent, places in table[:3 if TORTURE > 1 else 1]:
         state = orbits.follow(orbits.trig, (1432, 1897), 2513, [float(eps)])[-1]
         proved = orbits.prove(state)
         assert float(least) <= float(proved.least) < 1.1 * float(least)
