@@ -1,7 +1,6 @@
 """The charts: drawn from made-up numbers; the command is not run to its end, which takes long."""
 
 import math
-import re
 import runpy
 import xml.etree.ElementTree as ET
 
@@ -11,7 +10,6 @@ import pytest
 from conftest import ROOT
 
 from converse import orbits
-from converse.commands import common
 from converse.model.map import LINE
 
 ROWS = {
@@ -36,24 +34,6 @@ def test_charts(name):
     data = chart.chart(name, ROWS[name])
     ET.fromstring(data)
     assert b"dc:date" not in data and data == chart.chart(name, ROWS[name])
-
-
-def test_a_table_is_drawn_again(tmp_path, monkeypatch, capsys):
-    """And what is in it is what is drawn; nothing is measured."""
-    pytest.importorskip("matplotlib")
-    header, _, draw = chart.CHARTS["wall"]
-    monkeypatch.setitem(chart.CHARTS, "wall", (header, lambda quick: iter(ROWS["wall"]), draw))
-    wall, picture = ["--only", "wall"], tmp_path / "chart-wall.svg"
-    assert chart.main([str(tmp_path), *wall]) == 0
-    first = picture.read_bytes()
-    picture.unlink()
-    monkeypatch.setitem(chart.CHARTS, "wall", (header, None, draw))
-    assert chart.main([str(tmp_path), *wall, "--draw"]) == 0 and picture.read_bytes() == first
-    assert chart.read("wall", str(tmp_path / "chart-wall.csv")) == ROWS["wall"]
-    (tmp_path / "chart-wall.csv").write_text("a,b\n")
-    capsys.readouterr()
-    assert chart.main([str(tmp_path), *wall, "--draw"]) == common.BAD
-    assert re.fullmatch("chart.py: .*measure anew\n", capsys.readouterr().err)
 
 
 def drawn(name, rows):

@@ -30,16 +30,6 @@ def take(generator, count):
     return list(islice(generator, count))
 
 
-def test_the_constants():
-    """Each lies below the root it stands for, and STEP more lies above."""
-    roots = [(GOLDEN, lambda x: x * x + x - 1),
-             (SPIRAL_MEAN[1], lambda x: x ** 3 + x * x - 1),       # 1/tau
-             (SPIRAL_MEAN[0], lambda x: x ** 3 - x * x + 2 * x - 1)]         # 1/tau^2
-    for number, polynomial in roots:
-        assert polynomial(number) < 0 < polynomial(number + STEP)
-    assert [round(float(x), 7) for x in SPIRAL_MEAN] == [0.5698403, 0.7548777]
-
-
 def test_spiral_mean():
     mediants = take(farey.triangle(SPIRAL_MEAN), 30)
     assert [m.q for m in mediants] == PADOVAN
@@ -57,19 +47,6 @@ def test_a_tenth_and_the_golden_mean():
     assert mediants == take(farey.triangle(("0.1", str(float(GOLDEN)))), 37)
     nearest = Fraction(0.1), GOLDEN                   # the double is above a tenth
     assert take(farey.triangle(nearest), 37)[36] != mediants[36]
-
-
-def test_golden_mean():
-    """The n-th approximant is the mediant of level n with the largest p + q."""
-    intervals = [((0, 1), (1, 1))]
-    for n, mediant in enumerate(take(farey.tree(GOLDEN), 9)):
-        level = [tuple(map(sum, zip(*ends))) for ends in intervals]
-        assert sum(max(level, key=sum)) == mediant.p[0] + mediant.q
-        assert mediant.address == ("rl" * 9)[:n]
-        assert all(Fraction(*right) - Fraction(*left) <= Fraction(1, n + 1)
-                   for left, right in intervals)
-        intervals = [ends for (left, right), middle in zip(intervals, level)
-                     for ends in ((left, middle), (middle, right))]
 
 
 @given(inside)
@@ -105,11 +82,3 @@ def test_triangle(w):
             cell = halves(cell)["lr".index(mediants[-1].address[k])]
     if len(mediants) < 60:
         assert (Fraction(p[0], q), Fraction(p[1], q)) == w
-
-
-@given(st.integers(2, 60).flatmap(lambda q: st.tuples(st.integers(1, q - 1), st.integers(1, q - 1),
-                                                      st.just(q))))
-def test_rational_vectors_are_met(point):
-    p0, p1, q = point
-    *_, last = farey.triangle((Fraction(p0, q), Fraction(p1, q)))
-    assert (last.p[0] * q, last.p[1] * q) == (p0 * last.q, p1 * last.q) and last.q <= q
