@@ -46,26 +46,12 @@ def test_sound_mode_adds_its_grounds(made_up):
 
 
 def test_the_sharper_method_in_its_own_words(made_up):
-    """The theorem comes first; the method has no images, and what it excludes is closed."""
+    """The theorem comes first; the method has no images, and what it excludes is closed.  (The
+    golden outputs have whole reports.)"""
     text = made_up("P", method="loewner", counts=COUNTS, comments=("A line.",)).report()
-    assert text.startswith(
-        "THEOREM\n  The map  y' = y + J',  J' = J - grad V(y),  y modulo 2 pi,\n"
-        "  with  V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1),\n"
-        "  that is,  J0' = J0 + a cos y0 + c cos(y0 + y1),\n"
-        "  J1' = J1 + b cos y1 + c cos(y0 + y1),\n"
-        "  has no invariant torus J = P + S'(y) over both angles, P constant, S periodic and C1\n"
-        "  for every a in [0.30725, 0.30975], b in [0.30725, 0.30975], c in [0.6145, 0.6195].\n\n"
-        "Verify     save(FILE) keeps the proof; converse-check FILE verifies it\n"
-        "Input      > A line.\n")
-    for words in ("converse " + __version__, "x* = (1.5, 1.5)", "B = 1.25: no eigenvalue",
-                  "156 prisms proved, 11 skipped by symmetry, cut 13 times at most; orbits of up "
-                  "to 4 points; 318 tries Time 12.50 s"):
-        assert words in " ".join(text.split())
-    assert "image" not in text and " < " not in text and "tries without" not in text
-    assert "Verify     converse-check a.proof\n" in verdict(
-        made_up("P", method="loewner"), "a.proof")
-    assert "Verify     converse-check 'a b.proof'\n" in verdict(
-        made_up("P", method="loewner"), "a b.proof")
+    assert text.startswith("THEOREM\n") and "image" not in text and " < " not in text
+    for name, words in ("a.proof", "a.proof"), ("a b.proof", "'a b.proof'"):
+        assert "converse-check %s\n" % words in verdict(made_up("P", method="loewner"), name)
 
 
 def test_header_without_comments(made_up):
@@ -311,13 +297,7 @@ def test_for_which_parameters(problem, V, lines):
 
 def test_the_theorem_of_a_circle(made_up):
     proof = made_up("P", method="loewner", xstar=("1.5", "0")).with_tree(0, problem=named((1, 0)))
-    assert report(proof).startswith(
-        "THEOREM\n  The map  y' = y + J',  J' = J - V'(y),  y modulo 2 pi,\n"
-        "  with  V(y) = K cos y,\n  that is,  J' = J + K sin y,\n"
-        "  has no rotational invariant circle\n  for every K in [0.9, 1.4].\n\n")
-    assert "\nStart      x* = 1.5\n" in report(proof)
-    assert "UNDECIDED: nothing is proved.  There may be a rotational invariant circle (see " in \
-        report(proof.with_tree(0, text="U"))
+    assert "circle" in report(proof) and "circle" in report(proof.with_tree(0, text="U"))
     for problem, words in ((Problem(MuldoonMap(1, 0, 0)),
                             "So the map of y0 alone has no rotational"),
                            (Problem(MuldoonMap(0, 1, 0)),
