@@ -56,7 +56,7 @@ def run(tmp_path, capsys):
         status = check.main([*options, str(path)])
         out, err = capsys.readouterr()
         if data.startswith(b"converse proof 6") and len(data) < 20000 and not options:
-            assert says_the_same(path, status)
+            assert says_the_same(path, status, err)
         return status, out, err.replace(str(path), "FILE")      # its directory names the test
     return run
 

@@ -154,16 +154,16 @@ def test_any_change_of_a_file(formats, tmp_path_factory, which, edits, seal, zip
         data = resealed(data)
     path = tmp_path_factory.getbasetemp() / ("changed-%d" % os.getpid())
     path.write_bytes(gzip.compress(data, 1) if zipped else data)
-    status = check.VERIFIED
+    status, why = check.VERIFIED, ""
     for read, failure in (check.verify, check.Failure), (LOAD[which], ConverseError):
         try:
             found = read(path)
             assert seal or data == formats[which]
         except failure as error:
             one_line(error)
-            found = error
+            found, why = error, why + str(error)
         status = getattr(found, "status", status)
-    assert which > 1 or says_the_same(path, status)
+    assert which > 1 or says_the_same(path, status, why)
 
 
 @MANY
