@@ -186,7 +186,8 @@ def _prove(options, tori):
     options.proved = True
     if options.graphics is not None:
         from ..draw import torus_figure
-        torus_figure.draw(proof, options.graphics)
+        torus_figure.draw(
+            [piece.torus for piece in proof.pieces], None, proof.pieces, options.graphics)
     return 0
 
 

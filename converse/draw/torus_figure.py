@@ -18,27 +18,22 @@ LATTICE = 20000             # modes that are drawn, at most: those with the larg
 TURN = 2 * math.pi
 
 
-def draw(proof, path):
-    """Draws a ProvedTorus in a file, as its name says: SVG, PNG or PDF.  ConverseError: it cannot
-    be drawn."""
-    kind = plot.check_file(path)
-    files.write(path, picture([piece.torus for piece in proof.pieces], kind, proof.pieces))
-
-
-def picture(tori, kind="png", proved=()):
-    """The bytes of a picture of tori that cover a range, or of one torus.
+def draw(tori, ax=None, proved=(), path=None):
+    """A picture of tori that cover a range, or of one torus: in a file, as its name says; or the
+    tori drawn into Axes; or a Figure that a notebook shows.  ConverseError: it cannot be drawn.
 
     proved -- of each what its proof says (proved.Piece)"""
-    return plot.written(*_size(tori, proved), kind, lambda figure: _fill(figure, tori, proved),
-                        "constrained")
+    def fill(figure):
+        _fill(figure, tori, proved)
 
-
-def plotted(tori, ax=None, proved=()):
-    """The picture as a Figure that a notebook shows, or the tori drawn into Axes."""
-    if ax is not None:
-        return into(ax, tori)
-    return plot.new(*_size(tori, proved), lambda figure: _fill(figure, tori, proved),
-                    "constrained")
+    if path is not None:
+        kind = plot.check_file(path)
+        files.write(path, plot.written(*_size(tori, proved), kind, fill, "constrained"))
+    elif ax is None:
+        return plot.new(*_size(tori, proved), fill, "constrained")
+    else:
+        into(ax, tori)
+    return ax
 
 
 def _panels(tori, proved):
@@ -64,7 +59,7 @@ def _fill(figure, tori, proved):
 
 
 def into(ax, tori):
-    """Draws the tori into Axes, which are returned: one with one angle, a pair with two.
+    """Draws the tori into Axes: one with one angle, a pair with two.
     ValueError: there are more or fewer Axes."""
     axes = np.ravel(ax)
     n = tori[0].dimension
@@ -76,7 +71,6 @@ def into(ax, tori):
     else:
         for i in range(2):
             _surface(axes[i].figure, axes[i], tori[-1], i)
-    return ax
 
 
 def _title(tori, width, proved):

@@ -1,6 +1,6 @@
-"""Groups that vectors of integers generate."""
+"""Groups that vectors of integers generate, and determinants."""
 
-from typing import List, Optional, Sequence, Tuple
+from typing import Any, List, Optional, Sequence, Tuple
 
 Row = Tuple
 
@@ -48,3 +48,9 @@ def basis_along(q: Sequence[int]) -> List[Row]:
     others = [row[1:] for row in rest]
     return [c if c > (0,) * n else tuple(-x for x in c) for c in others] + [
         tuple(last[0] * x for x in last[1:])]
+
+
+def determinant(matrix: Sequence[Sequence]) -> Any:
+    """The determinant of a square matrix, by its first row."""
+    return sum((-1) ** j * x * determinant([[*row[:j], *row[j + 1:]] for row in matrix[1:]])
+               for j, x in enumerate(matrix[0]) if x) if matrix else 1

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Sequence,
 
 from ..storage.files import ConverseError, plain
 from .exact import Ends, Number, decimal_text, integer, is_decimal, is_integer, outward, range_text
-from .lattice import basis_along, echelon
+from .lattice import basis_along, determinant, echelon
 from .map import HIGHEST, PLACES, THESIS, Numbers, Range, SymplecticMap, ends_of, exact_of
 from .potential import Term, Wave, sum_text
 
@@ -166,11 +166,22 @@ class Problem:
 
     def _check_shifts(self):
         """Checks that there are distances for each parameter, or none."""
-        shifts = exact_shifts(self.shifts, self.size)
-        if self.shifts and len(self.shifts) != len(self.parts):
+        try:
+            shifts = tuple(tuple(exact_of("a shift", x) for x in by) for by in self.shifts)
+        except TypeError as error:
+            raise TypeError("shifts are pairs of numbers, or triples of three angles (%s)"
+                            % error) from None
+        if shifts and len(shifts) != len(self.parts):
             raise ValueError("there are shifts by %d parameters for %d"
-                             % (len(self.shifts), len(self.parts)))
-        object.__setattr__(self, "shifts", shifts)
+                             % (len(shifts), len(self.parts)))
+        for distances in shifts:
+            if len(distances) != self.size:
+                raise ValueError("the shifts by a parameter are of %s, not %d numbers"
+                                 % (" and ".join(ANGLES[:self.size]), len(distances)))
+            for x in distances:
+                if not is_decimal(x):
+                    raise ValueError("a shift: %s is not a finite decimal" % x)
+        object.__setattr__(self, "shifts", shifts if any(map(any, shifts)) else ())
 
     def _key(self):
         return (self.map, self.region, self.comments, self.frame, self.factor,
@@ -359,12 +370,6 @@ def rows(frame: Frame) -> Tuple[Tuple[int, ...], ...]:
     return tuple(frame[i:i + n] for i in range(0, n * n, n))
 
 
-def determinant(matrix: Sequence[Any]) -> Any:
-    """The determinant of a matrix, by its first row."""
-    return sum((-1) ** j * x * determinant([row[:j] + row[j + 1:] for row in matrix[1:]])
-               for j, x in enumerate(matrix[0]) if x) if matrix else 1
-
-
 def inverse(frame: Frame) -> Matrix:
     """The rows of the inverse of a frame."""
     matrix, size = rows(frame), determinant(rows(frame))
@@ -387,25 +392,6 @@ def periods(frame: Frame) -> Numbers:
     """P0, P1, ..., in units of pi: x_1 = frame.v is the same point of the torus where the last of
     v0, v1, ... is moved by its period, and each other one with some move of those after it."""
     return tuple(abs(move[i]) for i, move in enumerate(moves(frame)))
-
-
-def exact_shifts(shifts: Sequence[Sequence[Number]], size: int) -> Shifts:
-    """Exact shifts of `size` angles, () if all of them are 0.  TypeError, ValueError: these are not
-    shifts."""
-    try:
-        given = [tuple(distances) for distances in shifts]
-    except TypeError:
-        raise TypeError("shifts are pairs of numbers, or triples of three angles") from None
-    found = []
-    for distances in given:
-        if len(distances) != size:
-            raise ValueError("the shifts by a parameter are of %s, not %d numbers"
-                             % (" and ".join(ANGLES[:size]), len(distances)))
-        found.append(tuple(exact_of("a shift", x) for x in distances))
-        for x in found[-1]:
-            if not is_decimal(x):
-                raise ValueError("a shift: %s is not a finite decimal" % x)
-    return tuple(found) if any(map(any, found)) else ()
 
 
 def frame_text(frame, name):

@@ -9,6 +9,9 @@ states with angles of period 1, as in the thesis.  All functions and methods rai
 map, a type or a number is not as described.
 """
 
+from ..storage.files import ConverseError
+from ..storage.methods import absent
+
 try:
     from .minimax import Pair
     from .onset import Onset, onset
@@ -16,16 +19,8 @@ try:
     from .proved import NotProved, ProvedOrbit, prove
     from .solver import Family, follow, straight
     from .state import PeriodicOrbit
-except ImportError as _error:           # raised when a name is used: the command needs a line
-    _MISSING = ("converse.orbits needs numpy and the C core (%s); pip install "
-                "'converse-kam[orbits]'" % _error)
-
-    def __getattr__(name):
-        from ..storage.files import ConverseError
-        if name.startswith("__"):
-            raise AttributeError(name)
-        from ..prover import native  # noqa: F401, which says more if it is the core that is missing
-        raise ConverseError(_MISSING)
+except (ImportError, ConverseError) as _error:      # said when something is asked for
+    __getattr__ = absent("converse.orbits needs numpy", "orbits", _error)
 
 __all__ = ["Family", "NotProved", "Onset", "Pair", "PeriodicOrbit", "Potential", "ProvedOrbit",
            "follow", "froeschle", "onset", "prove", "standard", "straight", "trig"]

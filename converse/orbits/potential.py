@@ -13,13 +13,12 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from .._native import ffi, lib
 from ..model.dynamics import Dynamics
-from ..model.exact import Ends, root_bounds
+from ..model.exact import MAX_EXPONENT, Ends, root_bounds
 from ..model.map import SymplecticMap
 from ..model.potential import (FourierSum, from_terms, per_period, potential_text, product,
                                two_at_most)
-from ..prover.native import check
+from ..prover.native import check, ffi, lib
 from ..storage.files import plain
 from .limits import MIN_STEP_RATIO
 
@@ -219,7 +218,16 @@ class Fourier(Potential):
 
     @cached_property
     def _bounds(self):
-        return _bounds(_significant(self.sum), self.scale_enclosure(30)[1])
+        """Curvature and lipschitz: (2 pi)^m times the sum of |k|^m |amplitude|, m = 2 and 3, added
+        up exactly and a little more; as a double at least that, float() being off by 2^-53."""
+        size = self.scale_enclosure(30)[1]
+        sums = [size * sum(_root_up(sum(i * i for i in k)) ** m * abs(p)
+                           for (*k, _), p in zip(self.sum.waves, self.sum.amplitude))
+                for m in (2, 3)]
+        if max(sums) > 10 ** 300:
+            raise ValueError("the amplitudes of a Fourier sum are too large for doubles")
+        return [float(bound * x * (1 + Fraction(1, 2 ** 50)))
+                for bound, x in zip(sums, (Fraction("39.4785"), Fraction("248.0503")))]
 
     @property
     def curvature(self) -> float:
@@ -243,7 +251,7 @@ class Fourier(Potential):
     def arrays(self) -> List[np.ndarray]:
         """The integers k, shape (m, 2), and the coefficients of the cosines and of the sines, scale
         and all, of V(x)."""
-        terms, scale = _significant(self.sum), self.scale
+        terms, scale = list(self.sum.terms(MAX_EXPONENT + 20)), self.scale
         return [np.array([k for k, *_ in terms], dtype=np.intc)] + [
             np.array([float(sum(term[i]) / 2) * scale for term in terms]) for i in (1, 2)]
 
@@ -321,31 +329,6 @@ def done(code):
     if error is not None:
         raise error
     return check(code)
-
-
-def _significant(source):
-    """The terms of a FourierSum to 18 significant digits at least."""
-    digits = 30
-    while True:
-        terms = list(source.terms(digits))
-        if all((high - low) * 10 ** 18 <= min(abs(low), abs(high))
-               for _, *both in terms for low, high in both):
-            return terms
-        if digits > 1000:
-            raise ValueError("an amplitude cannot be told from zero")
-        digits *= 2
-
-
-def _bounds(terms, size):
-    """Curvature and lipschitz: (2 pi)^m times the sum of |k|^m |amplitude|, m = 2 and 3, added up
-    exactly and a little more; as a double at least that, float() being off by 2^-53 of it."""
-    sums = [sum(size * _root_up(k0 * k0 + k1 * k1) ** m
-                * _root_up(sum(max(map(abs, ends)) ** 2 for ends in both))
-                for (k0, k1), *both in terms) for m in (2, 3)]
-    if max(sums) > 10 ** 300:
-        raise ValueError("the amplitudes of a Fourier sum are too large for doubles")
-    return [float(bound * x * (1 + Fraction(1, 2 ** 50)))
-            for bound, x in zip(sums, (Fraction("39.4785"), Fraction("248.0503")))]
 
 
 def _root_up(x):

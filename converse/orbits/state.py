@@ -8,9 +8,9 @@ from typing import Any, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
-from .._native import ffi, lib
 from ..model.dynamics import jacobians
 from ..model.exact import whole_number
+from ..prover.native import ffi, lib
 from ..storage.files import ConverseError
 from ..storage.methods import provided
 from .limits import (EIGENVALUE_ROUNDING, EIGENVALUE_STEP, MAX_DISPLACEMENT, MAX_PIVOTS, MAX_Q,

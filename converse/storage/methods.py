@@ -2,6 +2,8 @@
 
 A value declares such a method with its docstring, and imports nothing for it."""
 
+from .files import ConverseError
+
 # By method, "Class.method", the function that does the work.
 HOMES: "dict[str, str]" = {}
 
@@ -11,3 +13,16 @@ def provided(method):
     import importlib  # late, as all that delays the handlers of signals
     module, _, function = HOMES[method].rpartition(".")
     return getattr(importlib.import_module("converse." + module), function)
+
+
+def absent(needs, extra, error):
+    """__getattr__ of a package whose modules cannot be imported, for the reason `error`: whoever
+    uses a name of it is told, in a line, what the package needs."""
+    text = str(error) if isinstance(error, ConverseError) else \
+        "%s (%s); pip install 'converse-kam[%s]'" % (needs, error, extra)
+
+    def look_up(name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise ConverseError(text)
+    return look_up

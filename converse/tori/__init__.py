@@ -5,6 +5,8 @@
     proof = tori.prove(torus)
 """
 
+from ..storage.methods import absent
+
 try:
     from .certificate import Certificate, read
     from .effort import TimeIsUp
@@ -14,14 +16,7 @@ try:
     from .rotation import Rotation, read_rotation
     from .torus import Strip, Torus
 except ImportError as _error:           # said when something is asked for: the command needs a line
-    _MISSING = ("converse.tori needs numpy and python-flint (%s); pip install 'converse-kam[tori]'"
-                % _error)
-
-    def __getattr__(name):
-        from ..storage.files import ConverseError
-        if name.startswith("__"):
-            raise AttributeError(name)
-        raise ConverseError(_MISSING)
+    __getattr__ = absent("converse.tori needs numpy and python-flint", "tori", _error)
 
 __all__ = ["Certificate", "NotFound", "NotProved", "ProvedTorus", "Rotation", "Strip", "TimeIsUp",
            "Torus", "find", "nearest", "prove", "read", "read_rotation"]

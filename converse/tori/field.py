@@ -10,6 +10,7 @@ from typing import List, Sequence, Tuple
 
 from ..check import field
 from ..model.exact import Ends
+from ..model.lattice import determinant
 
 Element = Tuple[Fraction, ...]
 Polynomial = Tuple[int, ...]            # ascending coefficients, the last not 0
@@ -45,14 +46,6 @@ class Field(field.Field):
         while (ends := self.interval(a, bits))[1] - ends[0] > Fraction(1, 10 ** digits):
             bits *= 2
         return ends
-
-
-def determinant(matrix: Sequence[Sequence]) -> Fraction:
-    """The determinant of a square matrix, by expansion along its first row."""
-    if len(matrix) == 1:
-        return matrix[0][0]
-    return sum(((-1) ** j * x * determinant([[*row[:j], *row[j + 1:]] for row in matrix[1:]])
-                for j, x in enumerate(matrix[0]) if x), Fraction(0))
 
 
 # ---- polynomials

@@ -16,8 +16,9 @@ from converse import ConverseError, Problem, prove
 from converse.model import inputs
 from converse.model.exact import decimal_text
 from converse.model.inputs import read_input
+from converse.model.lattice import determinant
 from converse.model.map import THESIS, MuldoonMap, SymplecticMap
-from converse.model.problem import IDENTITY, InputError, determinant, inverse, rows
+from converse.model.problem import IDENTITY, InputError, inverse, rows
 from converse.prover import native
 
 GOOD = "0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"
