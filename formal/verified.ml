@@ -801,19 +801,6 @@ let choice total = function
     Hashtbl.mem found, count
   | _ -> (fun _ -> true), total
 
-(* The t at which so many waves are least, about. *)
-let nearest waves count =
-  let t = Array.make count 0.0 in
-  let descend m =
-    let square, slope = List.fold_left (fun (square, slope) w ->
-        let parts = Array.of_list (List.map float_of w.parts) in
-        let p = ref (float_of w.middle) in
-        Array.iteri (fun i g -> p := !p +. g *. t.(i)) parts;
-        square +. parts.(m) *. parts.(m), slope +. parts.(m) *. !p) (0.0, 0.0) waves in
-    if square > 0.0 then t.(m) <- Float.max (-1.0) (Float.min 1.0 (t.(m) -. slope /. square)) in
-  for _ = 1 to 4 do Array.iteri (fun m _ -> descend m) t done;
-  List.map (fun x -> billionths (1e9 *. x)) (Array.to_list t)
-
 (* Where a linked leaf may lead out of the region that it is linked to; Coq has refused it.  It is named by
    its number among the leaves that are linked to the same part. *)
 let rec blame_links hints = function
@@ -847,18 +834,8 @@ let blame hints { claim; trees; _ } =
         reject "%sa skipped leaf has no mirror image that is proved"
           (if name = "" then "" else name ^ ": ")) trees;
   blame_links hints trees;
-  let larger = match claim.of_once with
-    | No -> ""
-    | Upper_end | Whole_patch as once ->
-      let waves = felt claim.of_alone patch in
-      let t = if once = Upper_end then [whole 1]
-        else nearest waves (List.length (List.hd patch).parts) in
-      let there = List.map (fun w ->
-          { w with middle = List.fold_left2 (fun p g t -> qplus p (qmult g t)) w.middle w.parts t;
-                   parts = [] }) waves in
-      if below there (ratio (z_of 10) (z_of 3)) then
-        reject "larger parameters are not excluded at once: B <= 10/3 for some";
-      ", or that larger parameters are excluded at once" in
+  let larger =
+    if claim.of_once = No then "" else ", or that larger parameters are excluded at once" in
   let sum w = List.fold_left (fun x g -> qplus x (absolute g)) (absolute w.middle) w.parts in
   List.iteri (fun i w ->
       if List.mem w (felt claim.of_alone patch) && overflows (sum w) then

@@ -3,12 +3,11 @@
 import copy
 import itertools
 import math
-from fractions import Fraction
 
 from .arith import SINE_ERROR, dot, fixed_of, in_units, stiffness, upper_sqrt
 from .claim import ANGLE_AXES
 from .exact import Prism, PrismWave, attempt
-from .failures import NotConfirmed, Rejected
+from .failures import NotConfirmed
 from .limits import MAX_BITS, MAX_HALVINGS, MAX_PIECES, SITE_PENALTIES
 from .torus import is_at_once, torus_bound
 from .tree import changed, trees, worst_axis
@@ -160,27 +159,9 @@ class Criterion:
         return bool(waves) and is_at_once(self.coarse, waves,
                                           (1,) if self.claim.at_once == "upper end" else None)
 
-    def not_at_once(self):
-        """Is B <= 10/3 for some of these parameters?  Those nearest to 0 are tried, about."""
-        waves, t = self.reduced.waves, [Fraction(0)] * self.claim.parameters
-        for m in list(range(len(t))) * 4:
-            square = sum([wave.parts[m] ** 2 for wave in waves])
-            slope = sum([wave.parts[m] * wave.at(t) for wave in waves])
-            if square:
-                t[m] = min(max(t[m] - slope / square, Fraction(-1)), Fraction(1))
-                t[m] = Fraction(math.floor(t[m] * 2 ** 60), 2 ** 60)
-        if self.claim.at_once == "upper end":
-            t = (1,)
-        one, units = self.coarse.one, in_units(self.coarse, waves)
-        nearest = tuple([math.floor(wave.at(t) * one) for wave in waves])
-        return not waves or \
-            3 * (torus_bound(self.coarse, units, [nearest]) + stiffness(units)) <= 10 * one
-
 
 def check_at_once(criterion):
-    """Rejected or NotConfirmed, if larger parameters are claimed to be excluded at once, and are
-    not."""
+    """NotConfirmed, if larger parameters are claimed to be excluded at once, and it is not found
+    that they are."""
     if criterion.claim.at_once != "no" and not criterion.at_once():
-        if criterion.not_at_once():
-            raise Rejected("larger parameters are not excluded at once: B <= 10/3 for some")
         raise NotConfirmed("that larger parameters are excluded at once (B > 10/3)")

@@ -564,8 +564,6 @@ WRONG_STRUCTURE = {         # arguments of a file with two links -> a text; and 
                                                check.LETTERS[1:] + "PP"]),
                  "more parts than letters"),
     "an S without exchange": (lambda f: file_of("0SP"), "the problem is not symmetric"),
-    "at once where it is not": (lambda f: with_line(with_line(
-        file_of(**f), "odd about", "0 0"), "at once", "yes"), "not excluded at once: B <= 10/3"),
 }
 
 
