@@ -97,14 +97,13 @@ memcheck: $(VENV)/installed
 	PYTHONMALLOC=malloc valgrind -q --error-exitcode=9 --suppressions=tests/memcheck.supp $(VENV)/bin/python tests/memcheck.py
 
 # The rooms whose tests call the core in ways of their own.  The other rooms ask nothing else of it, and
-# sanitizers find nothing in Python, figures, reports, tables or the texts of roundings.  Linked proofs
-# are many ordinary searches, and so are the tasks of threads, processes, a Dask cluster and a sweep.
+# sanitizers find nothing in Python, figures, reports, tables or the texts of roundings.  The prover
+# hands searches to the core, as search does; only there maps of three angles are searched.
 # Orbits of thousands of points are followed as those of hundreds; test_the_longest_orbits follows some.
 # SHARE="not slow" takes the share of them that make check takes.
-SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover search thesis) \
-    $(addprefix --ignore=tests/, loewner/test_margins.py orbits/test_pictures.py \
-    $(addprefix prover/test_, best_shifts.py links.py parallel.py report.py shifts.py)) \
-    -k 'not dask and not long_call and not as_long_as and not are_long_only'
+SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover/test_three_angles.py search thesis) \
+    $(addprefix --ignore=tests/, loewner/test_margins.py orbits/test_pictures.py) \
+    -k 'not long_call and not are_long_only'
 
 # Safe path: the clone, where this starts, holds a core without sanitizers.
 sanitize: export CFLAGS = $(SANITIZE)

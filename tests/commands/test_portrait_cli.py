@@ -35,13 +35,13 @@ def inputs(root, tmp_path):
 def test_portrait_is_kept_continued_and_drawn(run, inputs, tmp_path):
     pytest.importorskip("matplotlib")
     path, picture = tmp_path / "a.portrait.gz", tmp_path / "a.png"
-    status, out, err = run(inputs["range"], "--columns", 30, "--depth", 9, "-b", path,
+    status, out, err = run(inputs["range"], "--columns", 16, "--depth", 8, "-b", path,
                            "--time-limit", 0)
-    assert (status, err) == (1, "") and "Columns : 0 of 15" in out
+    assert (status, err) == (1, "") and "Columns : 0 of 8" in out
     assert "Verify" not in out
     status, out, err = run("-r", path, "-g", picture, "--rotation", "golden",
                            "--rotation", "t^2+t-1: t/40")
-    assert (status, err) == (1, "") and "Columns : 15 of 15" in out
+    assert (status, err) == (1, "") and "Columns : 8 of 8" in out
     assert "\nVerify : converse-check %s\n" % path in out
     assert ": no torus of this rotation number" in out
     assert "for every t[1] in [-1, 1]" in out and check.verify(path)

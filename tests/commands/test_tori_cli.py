@@ -156,7 +156,7 @@ def test_beyond_the_last_torus_there_is_no_theorem(run, tmp_path, numbers, rotat
     """On a small mesh, since a larger one takes long to find nothing."""
     problem = tmp_path / "beyond.in"
     problem.write_text("".join("%s 0\n" % x for x in numbers) + "1 1\n1 1\n")
-    points = ["--points", "65536"] * (TORTURE <= 1)
+    points = ["--points", "16384"] * (TORTURE <= 1)
     status, out, err = run(problem, "--rotation", rotation, *points)
     assert (status, err) == (1, "") and "THEOREM" not in out
     assert "\nNot found  no torus" in out

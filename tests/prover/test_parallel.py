@@ -144,7 +144,7 @@ def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
                 raise error
         return trace
 
-    most, runs = 0, 30 * TORTURE            # the lines of the last run that was not struck
+    most, runs = 0, 12 * TORTURE            # the lines of the last run that was not struck
     for _ in range(runs):
         path.unlink(missing_ok=True)
         before, lines[:] = len(struck), [0, rng.randrange(20, most) if most else 0]
