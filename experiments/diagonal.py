@@ -23,7 +23,7 @@ from sweep import onsets
 from converse import orbits
 from converse.commands.common import ended
 from converse.model.map import LINE as THESIS_LINE
-from converse.model.potential import from_terms
+from converse.model.potential import FourierSum
 
 SIZES = {"full": {"heads": (3, 7), "least": 1000, "cells": 1000, "most": 400,
                   "eps": (0.0144, 0.0142, 0.0141, 0.0140, 0.01395, 0.0139),
@@ -41,9 +41,9 @@ PARTS = (np.arange(5) - 2) * 0.28       # of a cell, along a side; they overlap
 def diagonal():
     """The potential of the map on x_0 = x_1, for converse.orbits: half of trig's there, since both
     coordinates move."""
-    half = Fraction(-orbits.trig.scale) / 2
-    return orbits.potential.Fourier.of(from_terms({(1,): (0, half), (2,): (0, half)}), "diagonal",
-                                       factor="1")
+    sines = FourierSum(((1, 0, Fraction(0)), (2, 0, Fraction(0))),
+                       (Fraction(orbits.trig.scale) / 2,) * 2, 1)
+    return orbits.potential.Fourier.of(sines, "diagonal", factor="1")
 
 
 # ---- noble rotation numbers

@@ -85,14 +85,6 @@ def read_potential(source, at=()):
         raise ConverseError("%s: %s" % (source, error)) from None
 
 
-def _check_type(potential, vector):
-    if len(vector[0]) != potential.n:
-        raise ConverseError("the potential %s has %s: write types as %s" % (
-            potential.name, *(("two angles", "p0,p1/q") if potential.n == 2
-                              else ("one angle", "p/q"))))
-    return vector
-
-
 def parser():
     p = Parser(prog=COMMAND, epilog=ENDING, description=(
         "Finds periodic orbits of least action of the map x' = x + p', p' = p - eps grad V(x), "
@@ -119,11 +111,11 @@ def parser():
 
 # ---- what is done
 
-def _check_outputs(options, potential_file):
+def _check_outputs(options):
     if options.points is not None:
         from ..orbits.points import ENDINGS
-        files.check_output(options.points, "file of points", ENDINGS, [potential_file])
-    check_figure(options, potential_file)
+        files.check_output(options.points, "file of points", ENDINGS, [options.potential])
+    check_figure(options, options.potential)
     if options.graphics is not None:
         from ..orbits.pictures import MOST_STATES
         if sum(map(len, options.eps)) > MOST_STATES:
@@ -164,24 +156,13 @@ class _Finding:
                                      plain(str(reason))))
             self.failed = True
 
-    def write_files(self):
-        options = self.options
-        if options.points is not None and self.states:
-            from ..orbits.points import save
-            save(self.states, options.points)
-        if options.graphics is not None and self.states:
-            from ..orbits.pictures import states_picture
-            files.write(options.graphics, states_picture(
-                self.drawn, files.ending(options.graphics)))
-
 
 def run(options):
     from converse import orbits
 
     orbits.PeriodicOrbit                        # or a line that says what is missing
     potential = read_potential(options.potential, options.at)
-    p, q = _check_type(potential, options.type)
-    _check_outputs(options, options.potential)
+    _check_outputs(options)
 
     from ..orbits.proved import balls
     from ..orbits.report import header
@@ -189,25 +170,25 @@ def run(options):
 
     if options.prove:
         balls()
-    if options.minimax and potential.n > 1:
-        raise ConverseError("--minimax: passes are looked for in maps of one angle; leave it out")
-    if options.minimax and math.gcd(*p, q) > 1:
-        raise ConverseError("--minimax: the type is not in lowest terms; divide it by %d"
-                            % math.gcd(*p, q))
-    eps = [x for each in options.eps for x in each]
-    start = straight(potential, p, q)
-    eps = reached(potential, eps)
-    say(header(start))
+    if options.minimax and (potential.n > 1 or math.gcd(*options.type[0], options.type[1]) > 1):
+        raise ConverseError("--minimax is for types p/q of one angle, in lowest terms")
+    eps = reached(potential, [x for each in options.eps for x in each])
+    say(header(straight(potential, *options.type)))
     with ProgressLine(COMMAND) as line:
         found = _Finding(options, line)
         try:
-            follow(potential, p, q, eps, progress=lambda _, state: found.add(state),
+            follow(potential, *options.type, eps, progress=lambda _, state: found.add(state),
                    on_step=lambda state: line(lambda: "at eps %g, %d of %d states found" % (
                        state.eps, len(found.states), len(eps))))
         except ConverseError as reason:
             found.tell("\nNot found : %s\n" % plain(str(reason)))
             found.failed = True
-    found.write_files()
+    if options.points is not None and found.states:
+        from ..orbits.points import save
+        save(found.states, options.points)
+    if options.graphics is not None and found.states:
+        from ..orbits.pictures import states_picture
+        files.write(options.graphics, states_picture(found.drawn, files.ending(options.graphics)))
     return int(found.failed)
 
 

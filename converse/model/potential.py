@@ -126,17 +126,6 @@ def harmonics_text(waves, forms, factors, quarters: int, dimension: int, letter:
     return text
 
 
-def from_terms(terms) -> FourierSum:
-    """The FourierSum of {k: (c, d)}, k a tuple of one or two integers."""
-    waves, amplitude = [], []
-    for k, (c, d) in terms.items():
-        for p, phase in (-c, QUARTER), (-d, Fraction(0)):
-            if p or phase and not d:            # one, even if both are zero
-                waves.append((*k, *(0,) * (2 - len(k)), phase))
-                amplitude.append(p)
-    return FourierSum(tuple(waves), tuple(amplitude), max(map(len, terms)))
-
-
 def per_period(digits: int) -> Ends:
     """The factor 1/(4 pi^2) from V to U."""
     low, high = pi_bounds(digits + 2)

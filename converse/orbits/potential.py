@@ -16,8 +16,7 @@ import numpy as np
 from ..model.dynamics import Dynamics
 from ..model.exact import MAX_EXPONENT, Ends, root_bounds
 from ..model.map import SymplecticMap
-from ..model.potential import (FourierSum, from_terms, per_period, potential_text, product,
-                               two_at_most)
+from ..model.potential import FourierSum, per_period, potential_text, product, two_at_most
 from ..prover.native import check, ffi, lib
 from ..storage.files import plain
 from .limits import MIN_STEP_RATIO
@@ -351,9 +350,9 @@ _HALF = Fraction(1, 2)
 
 # The first of the thesis's three, the real Froeschle map, and the standard map, whose eps is its
 # parameter k.  V = 1 at the start of trig, 9/16 at froeschle's.
-trig = Fourier.of(from_terms({(1, 0): (0, -_HALF), (0, 1): (0, -_HALF), (1, 1): (0, -1)}),
-                  "trig", (0.8510422, 0.8510422), TRIG)
-froeschle = Fourier.of(from_terms({(1, 0): (-_HALF / 2, 0), (0, 1): (-_HALF / 2, 0),
-                                   (1, 1): (-_HALF, 0)}),
-                       "froeschle", (0.29021531, 0.29021531), "1")
-standard = Fourier.of(from_terms({(1,): (-1, 0)}), "standard", (0.5,))
+_SINES, _COSINES = (((1, 0, phase), (0, 1, phase), (1, 1, phase)) for phase in (Fraction(0), _HALF))
+trig = Fourier.of(FourierSum(_SINES, (_HALF, _HALF, Fraction(1)), 2), "trig",
+                  (0.8510422, 0.8510422), TRIG)
+froeschle = Fourier.of(FourierSum(_COSINES, (_HALF / 2, _HALF / 2, _HALF), 2), "froeschle",
+                       (0.29021531, 0.29021531), "1")
+standard = Fourier.of(FourierSum(((1, 0, _HALF),), (Fraction(1),), 1), "standard", (0.5,))

@@ -97,7 +97,7 @@ def test_find_minimax(run):
     status, out, err = run("standard", "8/21", "0.2", "--minimax")
     assert status == 0 and "Pass : too flat for doubles" in out
     status, out, err = run("standard", "8/20", "0.2", "--minimax")
-    assert (status, out, err.count("\n")) == (2, "", 1) and "divide it by 4" in err
+    assert (status, out, err.count("\n")) == (2, "", 1) and "in lowest terms" in err
     status, out, err = run("standard", "1/3", "0", "--minimax")
     assert (status, err) == (1, "") and "No pass : at eps 0 all states" in out
 
@@ -215,8 +215,8 @@ def test_help_and_version(run):
     ([], "required"), (["trig"], "required"),
     (["trig", SMALL], "EPS"),
     (["trig", SMALL, "0.01", "--what"], "--what"),
-    (["trig", "1/2", "0.01"], "two angles"),
-    (["standard", SMALL, "0.5"], "one angle"),
+    (["trig", "1/2", "0.01"], "a type is 2 whole numbers"),
+    (["standard", SMALL, "0.5"], "a type is 1 whole number p"),
     *[(["trig", bad, "0.01"], "is not a type") for bad in (
         "1,2/0", "1,2,3/4", "1,2", "1.5,2/3", "a,b/c", "1,2/-3", "", "1" * 10 + ",2/3",
         "1,2/3\n4")],

@@ -9,13 +9,13 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from sums import fourier, named
+from sums import fourier, from_terms, named
 from thesis.potentials import ff, poly
 
 from converse import orbits
 from converse._native import lib
 from converse.model.map import SymplecticMap
-from converse.model.potential import FourierSum, from_terms
+from converse.model.potential import FourierSum
 from converse.orbits import solver
 from converse.orbits.potential import address
 
