@@ -429,22 +429,6 @@ def test_at_once_flipped(moving, run, name):
     assert "multiple" not in run(sealed(with_field(moving["segment"], "at once", "no")))[1]
 
 
-def test_parameters_widened_and_moved(moving, run):
-    """Down to where there are tori; and the segment only changes its slope."""
-    for name, pairs, why in (
-            ("segment", [("0.2", "0.12"), ("0.2", "0.12"), ("0.4", "0.24")], "not excluded"),
-            ("slanted", [("0.19", "0.15"), ("0.17", "0.13"), ("0.35", "0.3")], "not excluded"),
-            ("box", [("0.27", "0.2"), ("0.27", "0.2"), ("0.54", "0.5")], "not excluded"),
-            ("point", [("0.25", "0.2"), ("0.25", "0.2"), ("0.5", "0.4")], "not excluded"),
-            ("segment", [("-0.1", "0.4"), ("-0.1", "0.4"), ("-0.2", "0.8")], "not excluded"),
-            ("segment", [("0.27", "0.045"), ("0.27", "0.046"), ("0.54", "0.09")], "not symmetric"),
-            ("beginning", [("0.1", "0"), ("0.1", "0"), ("0.2", "0")], "not excluded")):
-        text = with_parameters(moving[name], *pairs)
-        assert "wrong checksum" in run(text)[2]
-        status, out, err = run(sealed(with_field(text, "at once", "no")))
-        assert (status, out) == (1 if "symm" in why else 5, "") and why in err, (name, pairs)
-
-
 @pytest.mark.parametrize("status, why, name, value", [
     (1, "symmetric", "a", "0.3085 0.3"), (1, "symmetric", "b", "0.3086 0.00125"),
     (5, "not excluded", "c", "0.617 0.617"), (5, "not excluded", "c", "0 0.0025"),
@@ -1016,12 +1000,6 @@ def test_forged_segments(texts, run, tree, centre, half):
     upper = 472 * (c + h) > 133             # B > 10/3 there
     assert (status, out) == (5, "")
     assert ("not excluded: " if upper else "that larger parameters are excluded at once") in err
-
-
-def test_nearly_everything_is_not_everything(deep, run):
-    """Among boxes that are excluded, hide one whose parameters are not."""
-    text = with_parameters(deep, *[("0.13", "0.071")] * 2, ("0.26", "0.142"))
-    assert run(sealed(text))[0] == 5
 
 
 # ---- the arithmetic against mpmath
@@ -2087,7 +2065,7 @@ def test_nothing_that_minimizes_is_excluded(np, texts, generator):
     """Cells at the edge of what can be proved, of true and of false claims: wherever the fast path
     alone excludes a cell, no orbit of it minimizes."""
     cases = excluded = open_ones = 0
-    while cases < 2000 * min(2 * TORTURE - 1, 50):
+    while cases < 1000 * min(2 * TORTURE - 1, 50):
         scale = generator.choice(("0.1", "0.14", "0.16", "0.2", "0.3"))
         a, b, c = (Fraction(scale) * Fraction(generator.randint(50, 110), 100) * k
                    for k in (1, 1, 2))
@@ -2146,19 +2124,17 @@ def test_numbers_that_are_none_prove_nothing(np, generator):
             assert not (bound < 0).any()
 
 
-def test_both_paths_agree(np, deep, moving, run):
-    """They confirm, and do not confirm, the same theorems; and halve few leaves."""
-    for text in (deep, moving["slanted" if TORTURE > 1 else "beginning"]):
-        for change in (lambda x: x, lambda x: with_field(x, "xstar", "1.2 1.2")):
-            results = []
-            for options in ((), ("--exact",)):
-                status, out, _ = run(sealed(change(text)), *options)
-                results.append((status, out.partition("\nChecker")[0]))
-                if text is deep and not status:
-                    pieces = int(re.search("in ([0-9]+) pieces", out).group(1))
-                    assert 200 < tree_of(deep).count("P") <= pieces < 1.1 * tree_of(deep).count("P")
-            assert results[0] == results[1]
-        assert status == 5
+def test_both_paths_agree(np, deep, run):
+    """They confirm, and do not confirm, the same theorem; and halve few leaves.  (Of smaller files
+    this is seen in test_parts.py.)"""
+    results = []
+    for options in ((), ("--exact",)):
+        status, out, _ = run(deep, *options)
+        results.append((status, out.partition("\nChecker")[0]))
+        pieces = int(re.search("in ([0-9]+) pieces", out).group(1))
+        assert 200 < tree_of(deep).count("P") <= pieces < 1.1 * tree_of(deep).count("P")
+        assert run(sealed(with_field(deep, "xstar", "1.2 1.2")), *options)[0] == 5
+    assert results[0] == results[1] and status == 0
 
 
 @pytest.mark.parametrize("blame, halved, axis", [
@@ -2472,7 +2448,7 @@ def test_at_once(texts, generator, monkeypatch):
     """True above B = 10/3, false below, of either sign; false with the origin in the box."""
     monkeypatch.setattr(check, "torus_bound", lambda fixed, *_: 4 * fixed.one)      # unused
     text = texts["trig274"]
-    for n in range(4 * min(TORTURE, 3)):
+    for n in range(2 * min(TORTURE, 3)):
         abc = [exact_decimal(generator, 1) * generator.choice((0, 1, 1)) for _ in range(3)]
         B = true_bound(list(map(float, abc)))
         scale = Fraction(round(4e9 / 3 / (B - 2)), 10 ** 9) if any(abc) else 1

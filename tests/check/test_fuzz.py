@@ -30,7 +30,7 @@ from converse.tori import certificate
 from checker import check, says_the_same
 from truth import TORTURE
 
-MANY = settings(max_examples=500 * TORTURE, deadline=None,
+MANY = settings(max_examples=200 * TORTURE, deadline=None,
                 suppress_health_check=list(HealthCheck))
 
 words = st.one_of(
@@ -144,7 +144,7 @@ LOAD = [Proof.load, Proof.load, certificate.read, Diagram.load, Portrait.load]
 
 
 @pytest.mark.parametrize("which", range(5), ids=["proof", "links", "torus", "diagram", "portrait"])
-@settings(MANY, max_examples=150 * TORTURE)
+@settings(MANY, max_examples=100 * TORTURE)
 @given(edits=edits, seal=st.booleans(), zipped=st.booleans())
 def test_any_change_of_a_file(formats, tmp_path_factory, which, edits, seal, zipped):
     """The checker verifies a changed file, and the program loads it, only if it was sealed again,
