@@ -6,7 +6,7 @@
 /* Return values. */
 enum {
     CV_OK = 0,
-    CV_RUNNING = 1,          /* the threads of the search are at work */
+    CV_RUNNING = 1,          /* of a search: prisms are left to decide */
     CV_ENOMEM = -1,
     CV_ENUMBER = -2,         /* a string is not a decimal number, or out of range */
     CV_EARGUMENT = -3,       /* an argument makes no sense (a negative half-width, dp < 1, ...) */
@@ -99,24 +99,25 @@ int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xs
                   int dp, int depth, int stubborn, int as_printed, int longest);
 void cv_search_free(cv_search *s);
 
-/* Forgets tree and counts; n prisms are to be decided now, the first of them first. */
-int cv_restart(cv_search *s, int n, const cv_cell *cells);
+/* No thread may be in cv_work meanwhile: takes up a tree, and forgets the one before and its counts.
+   text: the tree in preorder, or several ones, with a ? for each of the cells, in this order, that
+   are to be decided. */
+int cv_restart(cv_search *s, const char *text, const cv_cell *cells);
 
-/* Lets threads work: the first one sets the search up, if that was not done (the bounds over the
-   torus first of all), and then it and the others, if there is work enough, decide prisms.  With no
-   thread the search is only set up.  They end when all prisms are decided, when an undecided one
-   ends a search that is not stubborn, and when max_leaves further leaves are decided or the orbits
-   of the prisms that were decided since cv_restart have max_points further points.  Tree, counts
-   and the place of the end are the same for any number of threads.  CV_ENOMEM: no memory, or no
-   thread.  Any other error: one of before, or the setting up was broken off; then the search can
-   only be freed. */
-int cv_start(cv_search *s, int threads, long max_leaves, double max_points);
-/* Waits for the threads, for about so many seconds.  CV_RUNNING: they are at work.  CV_OK: they
-   have ended.  CV_ENOMEM: memory ran out; the tree is good as far as it was grown.  CV_EMACHINE:
-   the arithmetic breaks the rules, before the work or after it: nothing that the search did since
-   cv_restart may be used. */
-int cv_wait(cv_search *s, double seconds);
-/* Ends the threads soon.  Prisms that are being tried are forgotten. */
+/* Before threads work: they are to end when all prisms are decided, when an undecided one ends a
+   search that is not stubborn, and when max_leaves further leaves are decided or the orbits of the
+   prisms that were decided since cv_restart have max_points further points.  Tree, counts and the
+   place of the end are the same for any number of threads.  An error: one of before, or the setting
+   up was broken off; then the search can only be freed. */
+int cv_begin(cv_search *s, long max_leaves, double max_points);
+/* Sets the search up, if that was not done: the bounds over the torus first of all. */
+int cv_set_up(cv_search *s);
+/* Decides prisms, once the search is set up.  As many threads as like may be in this.  CV_ENOMEM:
+   memory ran out; the tree is good as far as it was grown.  CV_EMACHINE: the arithmetic breaks the
+   rules, before the work or after it: nothing that the search did since cv_restart may be used. */
+int cv_work(cv_search *s);
+/* The threads that are in one of these two are to end soon.  Prisms that are being tried are
+   forgotten. */
 void cv_halt(cv_search *s);
 
 /* A search as it is, whether or not threads are at work. */
@@ -127,8 +128,8 @@ typedef struct {
     int finished; /* are all prisms decided, or does an undecided one end the search? */
     int needs_long; /* see cv_search_new; the tree so far does not depend on `longest` */
     size_t length, n_cells;
-    char *tree; /* the nodes in preorder up to the first prism that is yet to be decided, */
-    int *steps; /* the lengths of their orbits, */
+    char *tree; /* the tree in preorder, with a ? for each prism that is yet to be decided, */
+    int *steps; /* the lengths of the orbits that this search followed, */
     cv_cell *cells; /* and the prisms yet to be decided, of which some may be known: these do not
                        count yet */
 } cv_view;

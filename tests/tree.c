@@ -1,7 +1,7 @@
 /* tree.c - the core without Python: grows the tree of the sharper method, three parameters or one,
    and prints it, so that machines can be compared (make arm).
 
-       tree a b c half-a half-b half-c together [threads] */
+       tree a b c half-a half-b half-c together */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,11 +22,10 @@ int main(int argc, char **argv)
                                  .odd = 1,
                                  .symmetric = argc > 7 && !strcmp(argv[1], argv[2]) &&
                                               !strcmp(argv[4], argv[5]) };
-    const int threads = argc == 9 ? atoi(argv[8]) : 1;
     cv_search *s;
     cv_view view;
 
-    if (argc < 8)
+    if (argc != 8)
         return 2;
     for (int k = 0; k < 3; k++) {
         waves[k].phase = "0";
@@ -35,10 +34,8 @@ int main(int argc, char **argv)
             waves[k].part[m] = together || m == k ? argv[4 + k] : "0";
     }
     if (cv_search_new(&s, &problem, NULL, CV_LOEWNER, 35, 120, 0, 0, 0) != CV_OK ||
-        cv_start(s, threads, 1L << 30, 1e300) != CV_OK)
+        cv_begin(s, 1L << 30, 1e300) != CV_OK || cv_set_up(s) != CV_OK || cv_work(s) != CV_OK)
         return 1;
-    while (cv_wait(s, 1.0) == CV_RUNNING)
-        continue;
     fprintf(stderr, "%d prisms at a time\n", s->method->lanes(s->work));
     if (cv_look(s, 1, &view) != CV_OK)
         return 1;

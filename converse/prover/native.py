@@ -2,6 +2,8 @@
 
 import math
 import os
+import threading
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, fields
 from decimal import Decimal
 from fractions import Fraction
@@ -13,8 +15,10 @@ from ..model.map import HIGHEST
 from ..model.problem import Problem, rows
 from ..model.region import symmetric
 from ..storage.files import ConverseError
+from ..storage.signals import Resource, postponed
 from ..version import __version__
 from .settings import Settings
+from .tree import UNTRIED
 from .workers import LOOK_SECONDS
 
 
@@ -160,16 +164,18 @@ class Task:
 
 @dataclass(frozen=True)
 class Grown:
-    """A part of a tree: nodes, and the cells that follow them, which are yet to be decided.
+    """A part of a tree: nodes, and cells that are yet to be decided.
 
-    text: the nodes in preorder.
+    text: the nodes in preorder; a ? stands for each of the cells, but not for those at the end.
     steps: the lengths of their orbits, if this is what one search has grown.
-    counts: their statistics.
+    counts: the statistics, in which nodes that were taken up do not count.
     cells: in preorder, each (index, cuts, hint): see cv_cell in csrc/converse.h.
     examined: the share of parameters and angles that lies in its leaves.
     finished: is every prism decided, or one undecided in a search that is not stubborn?
     needs_long: did it end before a prism that may need a longer orbit than the task allows?
-    points: how many the orbits of all its tries have."""
+    points: how many the orbits of all its tries have.
+    settled: the statistics up to the first prism on which somebody works: what depends on them does
+    not depend on the workers.  None: they are all."""
 
     text: str = ""
     steps: List[int] = field(default_factory=list)
@@ -179,6 +185,7 @@ class Grown:
     finished: bool = False
     needs_long: bool = False
     points: float = 0.0
+    settled: Optional[Counts] = None
 
     def followed_by(self, other: "Grown") -> "Grown":
         """The part that this one, whose cells were decided or none, is together with the next."""
@@ -264,6 +271,34 @@ def _nearly(phase):
     return decimal_text(Fraction(phase.numerator * scale // phase.denominator, scale))
 
 
+class _Threads(Resource):
+    """Threads that call something of the core's for a search; fewer if the system has no more."""
+
+    def __init__(self, call, handle, number):
+        self.handle, self.codes = handle, []
+        self.threads = [threading.Thread(target=lambda: self.codes.append(call(handle)))
+                        for _ in range(number)]
+
+    def acquire(self):
+        with suppress(RuntimeError):    # none more can be started
+            for thread in self.threads:
+                thread.start()
+
+    def wait(self):
+        """Waits for LOOK_SECONDS at most; does a thread still run?"""
+        self.threads = [thread for thread in self.threads if thread.is_alive()]
+        with postponed():
+            for thread in self.threads[:1]:
+                thread.join(LOOK_SECONDS)
+        return any(thread.is_alive() for thread in self.threads)
+
+    def release(self):
+        lib.cv_halt(self.handle)
+        for thread in self.threads:
+            if thread.ident:
+                thread.join()
+
+
 class Search:
     """A search in the C core, which begins with the whole root as its only cell."""
 
@@ -316,9 +351,10 @@ class Search:
         """Are mirror images skipped?"""
         return bool(lib.cv_skips(self.handle))
 
-    def restart(self, cells):
-        """Forgets the tree; these cells are to be decided now."""
-        check(lib.cv_restart(self.handle, len(cells), [
+    def restart(self, text, cells):
+        """Forgets the tree, and takes up another one, or trees that follow each other: these cells
+        are to be decided now, for each of which the text has a ?."""
+        check(lib.cv_restart(self.handle, self._letters(text).encode("ascii"), [
             (self._axes(index), self._axes(cuts), hint) for index, cuts, hint in cells]))
 
     def work(self, threads, look, leaves=MANY, points=math.inf):
@@ -326,23 +362,29 @@ class Search:
         many points more; with 0 threads the search is only set up.  look() is called a few times a
         second, and ends the work when it returns True.  Returns whether it did not.  A search whose
         setting up was ended is good for nothing."""
-        try:
-            check(lib.cv_start(self.handle, threads, min(leaves, MANY), points))
-            while check(lib.cv_wait(self.handle, LOOK_SECONDS)) == lib.CV_RUNNING:
+        if not self._call(lib.cv_set_up, 1, look):
+            return False
+        check(lib.cv_begin(self.handle, min(leaves, MANY), points))
+        return self._call(lib.cv_work, threads, look)
+
+    def _call(self, call, threads, look):
+        """Calls this of the core in threads; look() as of work()."""
+        with _Threads(call, self.handle, threads) as started:
+            while started.wait():
                 if look():
                     return False
-            return True
-        finally:
-            lib.cv_halt(self.handle)
+        for code in started.codes or [lib.CV_ENOMEM] * min(threads, 1):
+            check(code)
+        return True
 
     def view(self, whole=False):
         """What has been grown by now; without its text and cells, unless it is wanted whole."""
         view = ffi.gc(ffi.new("cv_view *"), lib.cv_forget_view)
         check(lib.cv_look(self.handle, whole, view))
-        nodes = view.length
+        text = ffi.unpack(view.tree, view.length).decode("ascii") if view.length else ""
+        text = self._letters(text.rstrip(UNTRIED))
         return Grown(
-            self._letters(ffi.unpack(view.tree, nodes).decode("ascii")) if nodes else "",
-            ffi.unpack(view.steps, nodes) if nodes else [], _counts(view.counts),
+            text, ffi.unpack(view.steps, len(text)) if text else [], _counts(view.counts),
             [(self._axes(cell.index), self._axes(cell.cuts), cell.hint) for cell in
              (view.cells[n] for n in range(view.n_cells))],
             view.examined, bool(view.finished), bool(view.needs_long), view.points)
@@ -350,7 +392,7 @@ class Search:
     def grow(self, cells=None, leaves=MANY, points=math.inf, threads=1, look=bool):
         """What becomes of these cells, or of those that are yet to be decided, when work() ends."""
         if cells is not None:
-            self.restart(cells)
+            self.restart(UNTRIED * len(cells), cells)
         self.work(threads, look, leaves, points)
         return self.view(True)
 

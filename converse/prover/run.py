@@ -23,7 +23,7 @@ from .orbit_length import longest
 from .proof import Proof, Tree
 from .resume import continued, counted
 from .settings import LENGTH, MAY_CHANGE, SETTINGS, Settings
-from .shared import Growth, Shared
+from .shared import Shared, take_up
 from .starts import MAX_PROOF_LEAVES, has_width, plan
 from .workers import WorkerPool, count_workers
 
@@ -195,7 +195,7 @@ class _Run:
         counts = self.counts = self.proof.counts
         if self.proof.parts:
             counts = replace(counts, **dict(zip(tree.NODES, tree.count(text))))
-        growth = Growth(search, self.proof.settings, text, self._tree.pending)
+        take_up(search, self.proof.depth, text, self._tree.pending)
         if any(getattr(counts, name) != n for name, n in zip(tree.NODES, tree.count(text))):
             raise native.WrongTree()
         self.counts_before = counts
@@ -207,15 +207,15 @@ class _Run:
         if wrong:
             raise native.WrongTree("a leaf that is linked to part %s may lead out of its region"
                                    % wrong)
-        self.search = growth
+        self.search = search
         left = MANY_LEAVES - counts.decided
         if self.may_be_long and left > 0 and not self._look():  # what is asked then is asked there,
-            self.search.work(self.threads, self._look, left)    # whenever this looks
+            search.work(self.threads, self._look, left)     # whenever this looks
         if not self.pool.here:
             if not self._look():
-                self.search.work(self.threads, self._look, ALONE_LEAVES)
+                search.work(self.threads, self._look, ALONE_LEAVES)
             if not self._look():        # it is not soon finished
-                self.search = Shared(replace(task, xstar=search.xstar), self.search.pieces(),
+                self.search = Shared(replace(task, xstar=search.xstar), search.view(True),
                                      self.pool)
         if not self._look():
             self.search.work(self.threads, self._look)
@@ -266,7 +266,7 @@ class _Run:
     def _counts(self):
         """The statistics as they stand."""
         return self.proof.counts if self.search is None else \
-            self.counts_before + self.view.settled
+            self.counts_before + (self.view.settled or self.view.counts)
 
     @property
     def _tree(self):
@@ -346,14 +346,11 @@ class _Run:
         """The proof as it stands."""
         proof = self.proof
         if self.search is not None:
-            pieces = self.search.pieces()
-            text = "".join([piece.text + tree.UNTRIED * len(piece.cells) for piece in pieces])
-            nodes = dict(zip(tree.NODES, tree.count(text)))     # an undecided prism drops some
-            counts = sum((piece.counts for piece in pieces), self.counts_before)
+            grown = self.search.view(True)
+            nodes = dict(zip(tree.NODES, tree.count(grown.text)))   # an undecided prism drops some
             proof = replace(proof.with_tree(
-                self.number, text=text.rstrip(tree.UNTRIED),
-                pending=tuple(hint for piece in pieces for _, _, hint in piece.cells)),
-                counts=replace(counts, **nodes))
+                self.number, text=grown.text, pending=tuple(hint for _, _, hint in grown.cells)),
+                counts=replace(self.counts_before + grown.counts, **nodes))
         if proof.parts:
             proof = replace(proof, counts=counted(proof))
         return replace(proof, seconds=self.seconds_before + time.monotonic() - self.began,

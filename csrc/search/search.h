@@ -15,6 +15,7 @@ typedef struct {
     outcome outcome;
     char kind;                          /* what became of it as in the text, or '?' */
     char busy;                          /* Does a thread try it? */
+    int given; /* Did an earlier run grow it?  Then its kind is all that is known. */
     int next;                           /* the next one in preorder, or the next free one */
 } prism;
 
@@ -42,10 +43,9 @@ struct cv_search {
     enum { READ, PREPARED, SPOILT } stage; /* SPOILT: the setting up was broken off */
     int numbers_lost; /* memory ran out inside GMP: guard.c */
     worker *workers;
-    int trying, active, idle; /* Are prisms to be tried?  Threads that run; that wait for prisms */
     stop_request stop; /* the threads are to end */
     pthread_mutex_t lock; /* of all that changes above, while threads are active */
-    pthread_cond_t changed, ended; /* there may be prisms to try; no thread is active */
+    pthread_cond_t changed; /* there may be prisms to try */
 };
 
 static inline int all_cuts(const cv_cell *c)
@@ -72,8 +72,7 @@ void put_outcome(cv_search *s, int id, const outcome *out);
    if the search has ended. */
 void append_known(cv_search *s);
 
-/* threads.c: makes the lock and its conditions; ends the threads and frees what they have. */
-int make_lock(cv_search *s);
+/* threads.c: frees what the threads had. */
 void free_workers(cv_search *s);
 
 /* setup.c: sets up what every thread needs, once.  CV_OK or an error. */

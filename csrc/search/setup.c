@@ -24,7 +24,6 @@ void cv_search_free(cv_search *s)
     }
     pthread_mutex_destroy(&s->lock);
     pthread_cond_destroy(&s->changed);
-    pthread_cond_destroy(&s->ended);
     free(s->prisms);
     free(s->tree);
     free(s->steps);
@@ -131,7 +130,8 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
     s = calloc(1, sizeof *s);
     if (s == NULL)
         return CV_ENOMEM;
-    status = make_lock(s);
+    status = pthread_mutex_init(&s->lock, NULL) | pthread_cond_init(&s->changed, NULL) ? CV_ENOMEM
+                                                                                       : CV_OK;
     patch_init(&s->problem);
     for (int j = 0; j < CV_N_CONSTANTS; j++)
         apm_init(s->constants[j]);
@@ -145,7 +145,7 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
         status = s->numbers_lost ? CV_ENOMEM : g.status;
     }
     if (status == CV_OK)
-        status = cv_restart(s, 1, &root);
+        status = cv_restart(s, "?", &root);
     if (status == CV_OK) {
         *result = s;
     } else {

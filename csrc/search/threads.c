@@ -1,15 +1,10 @@
 /* threads.c - threads try the first prisms of those that are pending.
 
    A thread takes as many prisms as its method tries together, tries them without the lock, and
-   records what became of them.  The threads run no code but this, and all signals are blocked in
-   them, so nobody changes their floating-point settings: each checks these when it begins and when
-   it ends. */
-#define _POSIX_C_SOURCE 200809L
-
-#include <math.h>
-#include <signal.h>
+   records what became of them.  Python makes the threads, which run no code but this meanwhile.  So
+   nobody changes their floating-point settings: each checks these when it begins and when it ends.
+ */
 #include <stdlib.h>
-#include <time.h>
 
 #include "arith/machine.h"
 #include "search/search.h"
@@ -17,30 +12,14 @@
 struct worker {
     cv_search *s;
     void *work;                         /* the method's */
-    pthread_t thread;
-    int has_thread, ready;              /* ready: its workspace is set up */
+    int busy, ready;                    /* Has a thread it?  Is the method's workspace set up? */
     int n, status, ids[MOST_LANES];     /* prisms at hand */
     cv_cell cells[MOST_LANES];
     outcome outcomes[MOST_LANES];
     worker *next;
 };
 
-#ifdef __APPLE__
-enum { CLOCK = CLOCK_REALTIME };        /* The conditions of threads know no other there. */
-#else
-enum { CLOCK = CLOCK_MONOTONIC };
-#endif
-static const double MOST_SECONDS = 1e6; /* A longer wait is cut to this. */
-
-static double now(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* Sets up the method's workspace; the first thread also sets up what all need. */
+/* Sets up the method's workspace; the first one also what all need. */
 static void begin(void *data)
 {
     worker *const w = data;
@@ -119,118 +98,82 @@ static void grow(worker *w)
         w->n = take_prisms(s, lanes, w->ids, w->cells);
         if (w->n > 0) {
             record(w, unlocked(w, try_prisms));
-            if (s->idle > 0)
-                pthread_cond_broadcast(&s->changed);
+            pthread_cond_broadcast(&s->changed);
         } else {
             append_known(s);                 /* The last prisms may have been skipped. */
             if (is_to_stop(&s->stop))
                 break;
-            s->idle++;
             pthread_cond_wait(&s->changed, &s->lock);
-            s->idle--;
         }
     }
 }
 
-static void *run(void *data)
-{
-    worker *const w = data;
-    cv_search *const s = w->s;
-
-    pthread_mutex_lock(&s->lock);
-    const int first = s->stage == READ && !is_to_stop(&s->stop);
-    if (first)
-        s->stage = SPOILT;              /* until this thread has set the search up */
-    while (s->stage == SPOILT && !first && !is_to_stop(&s->stop))
-        pthread_cond_wait(&s->changed, &s->lock);
-    if (!machine_is_sound()) {
-        s->status = CV_EMACHINE;
-    } else if (first || !is_to_stop(&s->stop)) {
-        const int ready = w->ready || unlocked(w, begin);
-        if (ready && first) {
-            s->stage = PREPARED;
-            pthread_cond_broadcast(&s->changed);
-        }
-        if (ready && s->trying)
-            grow(w);
-        if (!machine_is_sound())
-            s->status = CV_EMACHINE;
-    }
-    ask_to_stop(&s->stop, 1);
-    s->active--;
-    pthread_cond_broadcast(&s->changed);
-    if (s->active == 0)
-        pthread_cond_broadcast(&s->ended);
-    pthread_mutex_unlock(&s->lock);
-    return NULL;
-}
-
-/* Lets one thread more begin, with the lock held; CV_ENOMEM: the system allows none. */
-static int add_thread(cv_search *s)
+/* A workspace that no thread has, or a new one; NULL: no memory.  The first is that of cv_set_up. */
+static worker *free_worker(cv_search *s)
 {
     worker *w = s->workers;
-    sigset_t all, before;
-    int failed;
 
-    while (w != NULL && w->has_thread)
+    while (w != NULL && w->busy)
         w = w->next;
-    if (w == NULL) {
-        w = calloc(1, sizeof *w);
-        if (w == NULL)
-            return CV_ENOMEM;
+    if (w == NULL && (w = calloc(1, sizeof *w)) != NULL) {
         w->s = s;
         w->next = s->workers;
         s->workers = w;
     }
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    failed = pthread_create(&w->thread, NULL, run, w);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    if (failed)
-        return CV_ENOMEM;
-    w->has_thread = 1;
-    s->active++;
-    return CV_OK;
+    return w;
 }
 
-int cv_start(cv_search *s, int threads, long max_leaves, double max_points)
+/* Sets the search up, or decides prisms, in this thread. */
+static int run(cv_search *s, void (*what)(worker *w))
 {
-    int status;
+    int status = CV_ENOMEM;
 
-    cv_halt(s);
+    pthread_mutex_lock(&s->lock);
+    worker *const w = free_worker(s);
+    if (w != NULL) {
+        const int sound = machine_is_sound();
+        w->busy = 1;
+        if (sound)
+            what(w);
+        w->busy = 0;
+        if (!sound || !machine_is_sound())
+            s->status = CV_EMACHINE;
+        pthread_cond_broadcast(&s->changed);
+        status = s->status < CV_OK ? s->status : CV_OK;
+    }
+    pthread_mutex_unlock(&s->lock);
+    return status;
+}
+
+static void set_up_first(worker *w)
+{
+    w->s->stage = SPOILT;               /* until it is set up */
+    if (unlocked(w, begin))
+        w->s->stage = PREPARED;
+}
+
+static void work(worker *w)
+{
+    if (w->ready || unlocked(w, begin))
+        grow(w);
+    ask_to_stop(&w->s->stop, 1);        /* The others are to end, too. */
+}
+
+int cv_begin(cv_search *s, long max_leaves, double max_points)
+{
     if (s->status < CV_OK || s->stage == SPOILT)
         return s->status < CV_OK ? s->status : CV_EARGUMENT;
     for (int id = 0; id < s->n_prisms; id++)
         s->prisms[id].busy = 0;
     s->enough = decided_leaves(s) + max_leaves;
     s->most_points = s->points + max_points;
-    s->trying = threads > 0;
     ask_to_stop(&s->stop, 0);
-    pthread_mutex_lock(&s->lock);
-    do
-        status = add_thread(s);         /* Fewer will do. */
-    while (status == CV_OK && --threads > 0);
-    if (s->active > 0)
-        status = CV_OK;
-    pthread_mutex_unlock(&s->lock);
-    return status;
+    return CV_OK;
 }
 
-int cv_wait(cv_search *s, double seconds)
-{
-    const double end = now() + fmin(seconds, MOST_SECONDS), whole = floor(end);
-    const struct timespec t = { (time_t)whole, (long)(1e9 * (end - whole)) };
+int cv_set_up(cv_search *s) { return s->stage == READ ? run(s, set_up_first) : CV_OK; }
 
-    pthread_mutex_lock(&s->lock);
-    while (s->active > 0 && now() < end)
-        pthread_cond_timedwait(&s->ended, &s->lock, &t);
-    const int working = s->active > 0;
-    pthread_mutex_unlock(&s->lock);
-    if (working)
-        return CV_RUNNING;
-    cv_halt(s);
-    return s->status < CV_OK ? s->status : CV_OK;
-}
+int cv_work(cv_search *s) { return s->stage == PREPARED ? run(s, work) : CV_EARGUMENT; }
 
 void cv_halt(cv_search *s)
 {
@@ -238,16 +181,10 @@ void cv_halt(cv_search *s)
     pthread_mutex_lock(&s->lock);
     pthread_cond_broadcast(&s->changed);
     pthread_mutex_unlock(&s->lock);
-    for (worker *w = s->workers; w != NULL; w = w->next)
-        if (w->has_thread) {
-            pthread_join(w->thread, NULL);
-            w->has_thread = 0;
-        }
 }
 
 void free_workers(cv_search *s)
 {
-    cv_halt(s);
     while (s->workers != NULL) {
         worker *const w = s->workers;
         s->workers = w->next;
@@ -255,20 +192,4 @@ void free_workers(cv_search *s)
             s->method->free(w->work, s->numbers_lost);
         free(w);
     }
-}
-
-int make_lock(cv_search *s)
-{
-    pthread_condattr_t timed;
-    int failed = pthread_condattr_init(&timed);
-
-    if (failed)
-        return CV_ENOMEM;
-#ifndef __APPLE__
-    failed |= pthread_condattr_setclock(&timed, CLOCK);
-#endif
-    failed |= pthread_mutex_init(&s->lock, NULL) | pthread_cond_init(&s->changed, NULL) |
-              pthread_cond_init(&s->ended, &timed);
-    pthread_condattr_destroy(&timed);
-    return failed ? CV_ENOMEM : CV_OK;
 }

@@ -66,15 +66,15 @@ static void forget_prisms(cv_search *s)
     s->free_prism = 0;
 }
 
-/* Puts a prism that is to be tried into the list, after another one. */
-static int put_after(cv_search *s, int id, const cv_cell *cell)
+/* Puts a prism into the list, after another one. */
+static int put_after(cv_search *s, int id, const cv_cell *cell, char kind)
 {
     const int added = s->free_prism > 0 ? s->free_prism : s->n_prisms++;
     prism *const p = s->prisms;
 
     if (added == s->free_prism)
         s->free_prism = p[added].next;
-    p[added] = (prism){ .cell = *cell, .kind = '?', .next = p[id].next };
+    p[added] = (prism){ .cell = *cell, .kind = kind, .next = p[id].next };
     p[id].next = added;
     return added;
 }
@@ -113,18 +113,19 @@ void put_outcome(cv_search *s, int id, const outcome *out)
     p->kind = (char)('0' + axis);
     upper.hint = out->hint;
     split_cell(&upper, axis, &lower);
-    put_after(s, id, &upper);
-    put_after(s, id, &lower);
+    put_after(s, id, &upper, '?');
+    put_after(s, id, &lower, '?');
 }
 
 /* The last one of all that a prism in the list has become so far. */
 static int last_below(const cv_search *s, int id)
 {
-    for (int open = 1;; id = s->prisms[id].next) {
+    for (int open = 1; !s->prisms[id].given; id = s->prisms[id].next) {
         open += is_cut(s->prisms[id].kind) ? 1 : -1;
         if (open == 0)
-            return id;
+            break;
     }
+    return id;
 }
 
 /* ---- the tree's beginning */
@@ -189,20 +190,33 @@ static void append_first(cv_search *s)
 {
     const int id = s->prisms[0].next;
     const prism p = s->prisms[id];
-    const int cuts = all_cuts(&p.cell);
+    const int cuts = all_cuts(&p.cell), tried = !p.given && p.kind != 'S';
 
-    if (p.kind != 'S')
+    if (tried)
         count_try(s, &p);
-    count_node(&s->counts, p.kind, cuts);
+    if (!p.given) {
+        count_node(&s->counts, p.kind, cuts);
+        s->examined += is_cut(p.kind) ? 0.0 : ldexp(1.0, -cuts);
+    }
     s->tree[s->length] = p.kind;
-    s->steps[s->length++] = p.kind == 'S' || is_cut(p.kind) ? 0 : p.outcome.v.nsteps;
-    if (!is_cut(p.kind))
-        s->examined += ldexp(1.0, -cuts);
+    s->steps[s->length++] = tried && !is_cut(p.kind) ? p.outcome.v.nsteps : 0;
     s->prisms[0].next = p.next;
     s->prisms[id].next = s->free_prism;
     s->free_prism = id;
     if (p.kind == 'U' && !s->stubborn)
         forget_prisms(s);               /* the end: what is known beyond it does not count */
+}
+
+/* Appends the first prisms that an earlier run grew.  Then there is room for one more, or 0: no
+   memory. */
+static int append_given(cv_search *s)
+{
+    while (room_for_a_node(s) == CV_OK) {
+        if (!s->prisms[s->prisms[0].next].given)
+            return 1;
+        append_first(s);
+    }
+    return 0;
 }
 
 static int is_enough(const cv_search *s)
@@ -212,43 +226,57 @@ static int is_enough(const cv_search *s)
 
 void append_known(cv_search *s)
 {
-    while (s->status == CV_RUNNING && !is_enough(s)) {
+    while (s->status == CV_RUNNING) {
+        if (!append_given(s)) {
+            s->status = CV_ENOMEM;
+            break;
+        }
         const prism *const first = &s->prisms[s->prisms[0].next];
+        if (first->kind == '-')
+            s->status = CV_OK;          /* nothing is left */
+        if (first->kind == '-' || is_enough(s))
+            break;
         if (first->kind == '?')
             return;
         s->needs_long = first->outcome.cut_off && s->precision.longest < 0;
         if (s->needs_long)
             break;
-        if (first->kind == '-')
-            s->status = CV_OK;          /* nothing is left */
-        else if (room_for_a_node(s) != CV_OK)
-            s->status = CV_ENOMEM;
-        else
-            append_first(s);
+        append_first(s);
     }
     ask_to_stop(&s->stop, 1);
 }
 
 /* ---- what Python gives and gets */
 
-int cv_restart(cv_search *s, int n, const cv_cell *cells)
+int cv_restart(cv_search *s, const char *text, const cv_cell *cells)
 {
-    cv_halt(s);
-    if (s->numbers_lost)
+    static const cv_cell none;
+
+    if (s->numbers_lost || room_for_prisms(s, 1) != CV_OK)
         return CV_ENOMEM;
     if (s->stage == SPOILT)
         return CV_EARGUMENT;
-    s->n_prisms = 0;
-    if (room_for_prisms(s, n + 1) != CV_OK)
-        return CV_ENOMEM;
     forget_prisms(s);
     s->length = 0;
     s->needs_long = 0;
-    s->points = s->examined = 0.0;
+    s->points = 0.0;
+    s->examined = 1.0;
     memset(&s->counts, 0, sizeof s->counts);
     s->status = CV_RUNNING;
-    for (int j = n - 1; j >= 0; j--)
-        put_after(s, 0, &cells[j]);
+    for (int last = 0; *text != '\0'; text++) {
+        const int given = *text != '?';
+        if (!append_given(s) || room_for_prisms(s, 1) != CV_OK)
+            return CV_ENOMEM;
+        last = put_after(s, s->prisms[0].next == 0 ? 0 : last, given ? &none : cells, *text);
+        s->prisms[last].given = given;
+        s->examined -= given ? 0.0 : ldexp(1.0, -all_cuts(cells++));
+        if (*text == 'U' && !s->stubborn)
+            break;                      /* What follows does not count. */
+    }
+    if (!append_given(s))
+        return CV_ENOMEM;
+    if (s->prisms[0].next == 0)
+        s->status = CV_OK;
     return CV_OK;
 }
 
@@ -263,19 +291,22 @@ int cv_look(cv_search *s, int whole, cv_view *view)
                        .finished = s->status == CV_OK,
                        .needs_long = s->needs_long };
     if (whole) {
-        view->tree = malloc(s->length + 1);
-        view->steps = malloc((s->length + 1) * sizeof *view->steps);
+        const size_t most = s->length + (size_t)s->n_prisms;
+        view->tree = malloc(most);
+        view->steps = calloc(most, sizeof *view->steps);
         view->cells = malloc((size_t)s->n_prisms * sizeof *view->cells);
         if (view->tree == NULL || view->steps == NULL || view->cells == NULL) {
             status = CV_ENOMEM;
         } else {
-            if (s->length > 0) {        /* else there may be no arrays yet */
-                memcpy(view->tree, s->tree, s->length);
-                memcpy(view->steps, s->steps, s->length * sizeof *view->steps);
-            }
-            for (int id = s->prisms[0].next; id > 0; id = s->prisms[last_below(s, id)].next)
-                view->cells[view->n_cells++] = s->prisms[id].cell;
+            memcpy(view->tree, s->tree, s->length);
+            memcpy(view->steps, s->steps, s->length * sizeof *view->steps);
             view->length = s->length;
+            for (int id = s->prisms[0].next; id > 0; id = s->prisms[last_below(s, id)].next) {
+                const prism *const p = &s->prisms[id];
+                view->tree[view->length++] = p->given ? p->kind : '?';
+                if (!p->given)
+                    view->cells[view->n_cells++] = p->cell;
+            }
         }
     }
     pthread_mutex_unlock(&s->lock);

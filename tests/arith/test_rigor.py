@@ -197,12 +197,8 @@ def new(n=-1, dp=35, method=0, depth=30):
             handle[0] = ffi.NULL
     return code
 def grow(threads):
-    code = lib.cv_start(handle[0], threads, 10**6, 1e300)
-    while not code and lib.cv_wait(handle[0], 1e9) == lib.CV_RUNNING:
-        pass
-    code = code or lib.cv_wait(handle[0], 0.0)
-    lib.cv_halt(handle[0])
-    return code
+    code = lib.cv_begin(handle[0], 10**6, 1e300) or lib.cv_set_up(handle[0])
+    return code or threads and lib.cv_work(handle[0])
 def step():
     return grow(1)
 def look():

@@ -216,9 +216,9 @@ def half_width(search: Any, axis: int) -> Fraction:
 
 def grow(search: Any, leaves: int = native.MANY) -> str:
     """The text of a search of the product's, its handle, when it has so many leaves more."""
-    check(native.lib.cv_start(search, 1, leaves, math.inf))
-    while check(native.lib.cv_wait(search, 1.0)) == native.lib.CV_RUNNING:
-        pass
+    check(native.lib.cv_begin(search, leaves, math.inf))
+    check(native.lib.cv_set_up(search))
+    check(native.lib.cv_work(search))
     view = native.ffi.new("cv_view *")
     check(native.lib.cv_look(search, 1, view))
     text = native.ffi.unpack(view.tree, view.length).decode("ascii") if view.length else ""

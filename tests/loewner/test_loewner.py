@@ -23,7 +23,7 @@ from converse.model.map import LINE, MuldoonMap
 from converse.model.region import EXCHANGE, REVERSAL
 from converse.prover import run
 from converse.prover.native import Search, Task
-from converse.prover.shared import Growth
+from converse.prover.shared import take_up
 from converse.prover.tree import ROOT, cells, complete
 
 import kernels
@@ -839,9 +839,9 @@ def test_a_search_that_was_busy_takes_up_a_tree():
         assert search.work(0, bool)
         if busy:
             search.grow([((5, 9, 1, 0, 0), (4, 4, 1, 0, 0), 0), (*ROOT, 0)], busy)
-        growth = Growth(search, task.settings, "20", [])    # there are three cells
-        growth.work(1, bool)
-        texts.append(growth.pieces()[0].text)
+        take_up(search, 14, "20", [])       # there are three cells
+        search.work(1, bool)
+        texts.append(search.view(True).text)
     assert len(texts[0]) > 50 and texts == [texts[0]] * 4
 
 

@@ -424,16 +424,18 @@ def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
 
     for stubborn, text in (False, "0U"), (True, "0UP"):
         task = native.Task(LONG, Settings("loewner", stubborn=stubborn))
-        grown = shared.Shared(task, [part("0U"), part("P")], None)
-        view, (first,) = grown.view(), grown.pieces()
-        assert view.finished and first.text == text
+        search = shared.Shared(task, native.Grown(), None)
+        search.known = [part("0U"), part("P")]
+        view = search.view(True)
+        assert view.finished and view.text == text
         assert (view.counts.proved, view.counts.undecided) == (int(stubborn), 1)
 
 
 def test_one_prism_that_may_need_a_longer_orbit_is_remembered():
     """Whatever the tasks that end after it say."""
     tasks = [native.Grown(cells=[((0,), (cuts,), 0)]) for cuts in (1, 2)]
-    search = shared.Shared(native.Task(LONG, Settings()), tasks, None)
+    search = shared.Shared(native.Task(LONG, Settings()), native.Grown(), None)
+    search.known = tasks
     for task, needs_long in zip(tasks, (True, False)):
         search._take(task.cells, native.Grown("P", needs_long=needs_long))
-    assert search.view().needs_long and [part.text for part in search.pieces()] == ["PP"]
+    assert search.view().needs_long and search.view(True).text == "PP"

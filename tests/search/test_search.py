@@ -1,11 +1,11 @@
 """The search as a whole: what is proved is true, what is not true is not proved."""
 
 import contextlib
-import math
 import os
 import shutil
 import subprocess
 import sys
+import time
 from fractions import Fraction
 from threading import Thread
 
@@ -278,7 +278,7 @@ def core_search(xstar=None, depth=30, **settings):
 def test_a_tree_that_is_taken_up():
     """A whole tree leaves nothing to do, and a wrong one is refused."""
     from converse.prover.native import WrongTree
-    from converse.prover.shared import Growth
+    from converse.prover.shared import take_up
 
     search = core_search()
     for text, pending in (("P", 0), ("0PU", 0), ("0aP", 0), ("0SP", -1), ("0P", 1), ("0??", 2),
@@ -286,25 +286,26 @@ def test_a_tree_that_is_taken_up():
                           ("0P?\U0001d7d8", -1), ("0" * 30 + "P", 30), ("0" * 31 + "P", -1)):
         if pending < 0:
             with pytest.raises(WrongTree):
-                Growth(search, SETTINGS, text, [])
+                take_up(search, 30, text, [])
         else:
-            growth = Growth(search, SETTINGS, text, [])
-            assert sum(len(part.cells) for part in growth.pieces()) == pending
-            assert growth.view().finished == (pending == 0)
-            assert growth.work(1, bool, 100 if pending < 30 else 1)
+            take_up(search, 30, text, [])
+            view = search.view(True)
+            assert view.text == text.rstrip("?") and len(view.cells) == pending
+            assert view.finished == (pending == 0)
+            assert search.work(1, bool, 100 if pending < 30 else 1)
 
 
 @pytest.mark.parametrize("xstar, good", [(("0.82", "0.82"), True), (("0.82", "0.83"), False)])
 def test_what_was_skipped_must_be_symmetric(xstar, good):
     from converse.prover.native import WrongTree
-    from converse.prover.shared import Growth
+    from converse.prover.shared import take_up
 
     search = core_search(xstar)
     with contextlib.nullcontext() if good else pytest.raises(WrongTree):
-        Growth(search, SETTINGS, "01?S?", [])
+        take_up(search, 30, "01?S?", [])
     for text in "01?SS", "0S?", "1S?":
         with pytest.raises(WrongTree):
-            Growth(search, SETTINGS, text, [])
+            take_up(search, 30, text, [])
 
 
 def test_the_finest_index():
@@ -321,15 +322,12 @@ def test_the_finest_index():
 def test_stopped_in_the_middle_of_a_prism(threads):
     """The prisms at hand are forgotten, with their statistics; then the search goes on as if
     nothing had been."""
-    from converse.prover.native import check, lib
-
     for digits in 3000, 12000, 48000, 192000:       # where the stop is late a prism takes longer
         search, seen, stops, delay = core_search(digits=digits), "", 0, 0.002
         whole = core_search(digits=digits).grow(leaves=12)
         while sum(map(seen.count, "PSU")) < 12:
-            check(lib.cv_start(search.handle, threads, 12 - sum(map(seen.count, "PSU")), math.inf))
-            lib.cv_wait(search.handle, delay)
-            lib.cv_halt(search.handle)
+            end = time.monotonic() + delay
+            search.work(threads, lambda: time.monotonic() > end, 12 - sum(map(seen.count, "PSU")))
             text = search.view(True).text
             assert text.startswith(seen)
             stops += text == seen
@@ -345,8 +343,8 @@ def test_a_search_whose_setting_up_was_stopped_is_good_for_nothing():
 
     search = Search(Task(line("0.0275"), Settings("thesis", digits=100000)))
     assert not search.work(0, lambda: True)
-    assert lib.cv_restart(search.handle, 0, ffi.NULL) == lib.CV_EARGUMENT
-    assert lib.cv_start(search.handle, 1, 1, 1.0) == lib.CV_EARGUMENT
+    assert lib.cv_restart(search.handle, b"", ffi.NULL) == lib.CV_EARGUMENT
+    assert lib.cv_begin(search.handle, 1, 1.0) == lib.cv_work(search.handle) == lib.CV_EARGUMENT
 
 
 @pytest.mark.slow

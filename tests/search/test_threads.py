@@ -1,6 +1,5 @@
 """The same tree, statistics and place of the end, however many threads work on it."""
 
-import math
 import random
 import threading
 from dataclasses import replace
@@ -10,7 +9,7 @@ from files import line
 
 from converse.prover.native import Search, Task, WrongTree, chosen_start, grow
 from converse.prover.settings import Settings
-from converse.prover.shared import Growth
+from converse.prover.shared import take_up
 
 from truth import TORTURE
 
@@ -68,15 +67,11 @@ def test_what_is_left_goes_on_in_another_search():
     assert one.counts + rest.counts == whole.counts
     search = Search(LOEWNER)
     search.work(0, bool)
-    growth = Growth(search, LOEWNER.settings, one.text, [hint for _, _, hint in one.cells])
-    growth.work(2, bool)
-    again, = growth.pieces()
-    assert again.text == whole.text
-    assert again.counts == growth.view().counts == rest.counts
-
-
-def text_of(growth):
-    return "".join(part.text + "?" * len(part.cells) for part in growth.pieces())
+    take_up(search, LOEWNER.settings.depth, one.text, [hint for _, _, hint in one.cells])
+    search.work(2, bool)
+    again = search.view(True)
+    assert again.text == whole.text and not again.cells and again.counts == rest.counts
+    assert again.steps == [0] * len(one.text) + rest.steps
 
 
 def gaps(text, rng):
@@ -93,15 +88,15 @@ def test_gaps_are_filled(task):
     search.work(0, bool)
     for _ in range(10 * TORTURE):
         text = gaps(whole.text, rng)
-        growth = Growth(search, task.settings, text, [])
-        assert text_of(growth).rstrip("?") == text.rstrip("?")
-        growth.work(3, bool, rng.randrange(1, 40))
+        take_up(search, task.settings.depth, text, [])
+        assert search.view(True).text == text.rstrip("?")
+        search.work(3, bool, rng.randrange(1, 40))
         if rng.random() < 0.5:
-            text = text_of(growth)
-            growth = Growth(search, task.settings, text, [])
-        growth.work(2, bool)
-        (part, *others), view = growth.pieces(), growth.view()
-        assert not others and not part.cells
+            text = search.view(True).text
+            take_up(search, task.settings.depth, text, [])
+        search.work(2, bool)
+        part = view = search.view(True)
+        assert not part.cells
         assert view.finished and (view.examined == 1.0 or part.text.endswith("U"))
         if task.settings.method == "thesis":    # its tries do not depend on hints
             assert part.text == whole.text
@@ -121,19 +116,21 @@ def test_what_lies_beyond_an_undecided_prism_of_an_earlier_run_does_not_count():
     first = text.index("P")
     search = Search(task)
     search.work(0, bool)
-    growth = Growth(search, task.settings, text[:first] + "?" + text[first + 1:], [])
-    growth.work(2, bool)
-    assert text_of(growth) == whole.text and growth.view().finished
-    assert (growth.view().counts.proved, growth.view().counts.cuts) == (1, 0)
+    take_up(search, task.settings.depth, text[:first] + "?" + text[first + 1:], [])
+    search.work(2, bool)
+    view = search.view(True)
+    assert view.text == whole.text and view.finished and not view.cells
+    assert (view.counts.proved, view.counts.cuts) == (1, 0)
 
 
 def test_linked_leaves_are_kept():
     search = Search(LOEWNER)
     search.work(0, bool)
-    growth = Growth(search, LOEWNER.settings, "02a?b", [5])
-    assert text_of(growth) == "02a?b" and growth.pieces()[0].cells[0][2] == 5
+    take_up(search, LOEWNER.settings.depth, "02a?b", [5])
+    view = search.view(True)
+    assert view.text == "02a?b" and view.cells[0][2] == 5
     with pytest.raises(WrongTree):
-        Growth(search, LOEWNER.settings, "02a?A", [])
+        take_up(search, LOEWNER.settings.depth, "02a?A", [])
 
 
 def test_the_prisms_tried_ahead_are_tried_once():
@@ -161,12 +158,3 @@ def test_searches_in_several_threads_of_python():
     for thread in threads:
         thread.join()
     assert found == alone
-
-
-def test_a_search_that_is_forgotten_ends_its_threads():
-    search = Search(Task(line("0.0139", "0.0280"), Settings("loewner")))
-    search.work(0, bool)
-    from converse.prover.native import lib
-    assert lib.cv_start(search.handle, 3, 2 ** 30, math.inf) == lib.CV_OK
-    assert lib.cv_wait(search.handle, 0.05) == lib.CV_RUNNING
-    del search
