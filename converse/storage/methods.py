@@ -2,8 +2,6 @@
 
 A value declares such a method with its docstring, and imports nothing for it."""
 
-from .files import ConverseError
-
 # By method, "Class.method", the function that does the work.
 HOMES: "dict[str, str]" = {}
 
@@ -18,11 +16,10 @@ def provided(method):
 def absent(needs, extra, error):
     """__getattr__ of a package whose modules cannot be imported, for the reason `error`: whoever
     uses a name of it is told, in a line, what the package needs."""
-    text = str(error) if isinstance(error, ConverseError) else \
-        "%s (%s); pip install 'converse-kam[%s]'" % (needs, error, extra)
-
     def look_up(name):
+        from .files import ConverseError  # late, as above
         if name.startswith("__"):
             raise AttributeError(name)
-        raise ConverseError(text)
+        raise error if isinstance(error, ConverseError) else ConverseError(
+            "%s (%s); pip install 'converse-kam[%s]'" % (needs, error, extra))
     return look_up
