@@ -1,31 +1,27 @@
 """What docs/explanation/speed.md says of times, measured anew.
 
-    python experiments/bench [--repeat N] [--older DIRECTORY] [--whole] [WHAT ...]
+    python experiments/bench [--repeat N] [--whole] [WHAT ...]
 
 Prints figures and judges nothing.  Machines differ and are shared: a time is the least of N runs
-(3), and ratios within one run say more than seconds.  So --older has the sharper method timed in
-turn with that of another commit, built in place in DIRECTORY.  With --whole
-the checker verifies all proof files whole, which takes hours; without it, the files that take a
-minute or less.
+(3), and ratios within one run say more than seconds.  With --whole the checker verifies all proof
+files whole, which takes hours; without it, the files that take a minute or less.
 """
 
 import argparse
-import math
 import os
 import platform
-import subprocess
 import sys
 import tempfile
 import time
 from fractions import Fraction
 from pathlib import Path
 
-from converse.model.exact import decimal_text
-from converse.model.map import LINE
 from converse.prover import workers
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path.append(str(ROOT / "tests"))
+sys.path += [str(ROOT / "tests"), str(ROOT / "experiments")]
+import chart  # noqa: E402
+
 import kernels  # noqa: E402
 
 COMMAND = str(Path(sys.executable).parent / "converse")
@@ -87,63 +83,23 @@ def images(repeat):
         print("%-10s %12.0f %12.0f" % (name, *figures))
 
 
-# One thread of whichever converse is found there: seconds of the processor, the least of a few
-# runs, if they are short.
-TIMED = """
-import sys, time
-from dataclasses import replace
-import converse
-problem = converse.read_input(sys.argv[1])
-if sys.argv[2] == "together":
-    problem = problem.tied() if hasattr(problem, "tied") else replace(problem, together=True)
-seconds = []
-while len(seconds) < 5 and sum(seconds) < 1:
-    began = time.process_time()
-    assert converse.prove(problem, method="loewner", jobs=1).no_tori
-    seconds.append(time.process_time() - began)
-print(min(seconds))
-"""
-
-
-def one_thread(commits, path, how, repeat):
-    """The seconds that each of some commits takes for a proof, run in turn."""
-    least, began = [math.inf] * len(commits), time.monotonic()
-    for _ in range(repeat):
-        for k, commit in enumerate(commits):
-            found = subprocess.run([sys.executable, "-c", TIMED, path, how], check=True, cwd=commit,
-                                   env={**os.environ, "PYTHONPATH": commit}, stdout=subprocess.PIPE)
-            least[k] = min(least[k], float(found.stdout))
-        if time.monotonic() - began > LONG:
-            break
-    return least
-
-
-def frontier(repeat, older=None, whole=False):
-    """The theorems of the sharper method: one thread, beside another commit's; all cores; the
-    checker."""
+def frontier(repeat, whole=False):
+    """The theorems of the sharper method: one thread; all cores; the checker."""
     import converse
     jobs = workers.count_workers()
     print("method loewner, together, down to epsilon; its seconds and the checker's on one core")
-    print("%-17s %9s %9s %6s | %9s %6s %9s %7s %7s | %9s %9s" % (
-        "", "1 thread", "older", "ratio", "%d cores" % jobs, "ratio", "prisms", "points", "deepest",
-        "checked/s", "whole"))
+    print("%-17s %9s | %9s %6s %9s %7s %7s | %9s %9s" % (
+        "", "1 thread", "%d cores" % jobs, "ratio", "prisms", "points", "deepest", "checked/s",
+        "whole"))
     with tempfile.TemporaryDirectory() as directory:
         checked = 0
         for name in LOWS + APART:
-            path, how = str(ROOT / "inputs" / name), "apart"
-            if name in LOWS:
-                path, how = os.path.join(directory, name + ".in"), "together"
-                low, high = (Fraction(e) * LINE for e in (name, "0.0280"))
-                centre, half = (low + high) / 2, (high - low) / 2
-                Path(path).write_text("".join("%s %s\n" % tuple(map(decimal_text, row)) for row in (
-                    (centre, half), (centre, half), (2 * centre, 2 * half), (1, 1), (1, 1))))
-            alone, *others = one_thread([str(ROOT)] + [older] * bool(older), path, how, repeat)
-            problem = converse.read_input(path)
-            problem = problem.tied() if how == "together" else problem
-            proof = min((converse.prove(problem, method="loewner")
-                         for _ in range(repeat if alone < LONG / repeat else 1)),
-                        key=lambda proof: proof.seconds)
+            problem = chart.on_line(name, "0.0280", together=True) if name in LOWS else \
+                converse.read_input(ROOT / "inputs" / name)
+            proof, alone = chart.timed(problem, method="loewner")
             assert proof.no_tori
+            wall = min(converse.prove(problem, method="loewner").seconds
+                       for _ in range(repeat if alone < LONG / repeat else 1))
             file = os.path.join(directory, name + ".proof")
             proof.save(file)
             check = [COMMAND + "-check", "--quiet", file]
@@ -153,10 +109,9 @@ def frontier(repeat, older=None, whole=False):
                 words = "%.1f" % checked
             else:
                 words = ""
-            print("%-17s %9.4f %9s %6s | %9.4f %6.2f %9d %7d %7d | %9.0f %9s" % (
-                name, alone, *("%.4f" % x for x in others), *("%.2f" % (x / alone) for x in others),
-                *[""] * (2 - 2 * len(others)), proof.seconds, alone / proof.seconds,
-                proof.counts.proved, proof.counts.max_NTsteps, proof.counts.most_cuts,
+            print("%-17s %9.4f | %9.4f %6.2f %9d %7d %7d | %9.0f %9s" % (
+                name, alone, wall, alone / wall, proof.counts.proved, proof.counts.max_NTsteps,
+                proof.counts.most_cuts,
                 min(400, proof.counts.proved) / max(rate[1] - rate[0], 1e-3), words), flush=True)
 
 
@@ -186,22 +141,15 @@ def main():
     p = argparse.ArgumentParser(description="Measures the times in docs/explanation/speed.md.")
     p.add_argument("--repeat", type=int, default=3, metavar="N",
                    help="runs, of which the least counts")
-    p.add_argument("--older", metavar="DIRECTORY", help="another commit, built in place: frontier")
     p.add_argument("--whole", action="store_true", help="check all proof files whole: frontier")
     p.add_argument("what", nargs="*", metavar="WHAT",
                    help="of %s (default: all)" % ", ".join(PARTS))
     options = p.parse_args()
     if not set(options.what) <= set(PARTS) or options.repeat < 1:
         p.error("WHAT is any of %s, and N is 1 or more" % ", ".join(PARTS))
-    if options.older and not list(Path(options.older).glob("converse/_native.*")):
-        p.error("%s: holds no converse that is built in place" % options.older)
     print("%s, %s, Python %s" % (platform.machine(), platform.system(), platform.python_version()))
     for name in options.what or PARTS:
-        if name == "frontier":
-            older = options.older and os.path.abspath(options.older)
-            frontier(options.repeat, older, options.whole)
-        else:
-            PARTS[name](options.repeat)
+        PARTS[name](options.repeat, *[options.whole] * (name == "frontier"))
 
 
 if __name__ == "__main__":
