@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from numbers import Number
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, ClassVar, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -84,7 +84,11 @@ class Potential(Dynamics):
     2 pi: they are y = 2 pi x and J = 2 pi p.  The methods of the map take these, and evaluate()
     takes x.
 
-    A subclass has evaluate() and the properties here, and law() if its orbits are to be proved.
+    A subclass has evaluate(), `formula`, `curvature` and `lipschitz`: V(x), or V(y), in words,
+    exactly; an upper bound of the spectral norm of V'' anywhere; and K with |V''(x) - V''(y)|
+    <= K |x - y|, in these norms.  If its orbits are to be proved it has also law(base, u): V, its gradient, and the entries 00, 01 and 11 of its Hessian, as balls of
+    python-flint that hold them at the point base + u, base rational numbers and u balls without
+    radius.
 
     Parameters
     ----------
@@ -100,6 +104,9 @@ class Potential(Dynamics):
     start: Tuple[float, ...]
 
     period = 1.0
+    formula: ClassVar[Any]
+    curvature: ClassVar[Any]
+    lipschitz: ClassVar[Any]
 
     @property
     def n(self) -> int:
@@ -107,21 +114,6 @@ class Potential(Dynamics):
         return len(self.start)
 
     dimension = n                       # type: ignore[assignment]
-
-    @property
-    def formula(self) -> str:
-        """V(x), or V(y), in words, exactly, for reports."""
-        raise NotImplementedError
-
-    @property
-    def curvature(self) -> float:
-        """An upper bound of the spectral norm of V'' anywhere."""
-        raise NotImplementedError
-
-    @property
-    def lipschitz(self) -> float:
-        """K with |V''(x) - V''(y)| <= K |x - y|, in these norms."""
-        raise NotImplementedError
 
     @property
     def letters(self) -> str:           # type: ignore[override]
@@ -161,11 +153,6 @@ class Potential(Dynamics):
         ValueError
             The array has another shape.
         """
-        raise NotImplementedError
-
-    def law(self, base: Sequence[Any], u: Sequence[Any]) -> List[Any]:
-        """V, its gradient, and the entries 00, 01 and 11 of its Hessian, as balls of python-flint
-        that hold them at the point base + u: base rational numbers, u balls without radius."""
         raise NotImplementedError
 
     def _gradient(self, y):
