@@ -11,7 +11,6 @@ from fractions import Fraction
 from flint import arb, arb_mat, ctx, fmpq, fmpz
 
 from .limits import GUARD_BITS
-from .potential import Fourier
 
 
 def bits_of(places):
@@ -85,7 +84,7 @@ def square(v):
 
 def law_of(potential, digits):
     """All are linear in the cosines and sines of 2 pi k.x, unless the potential says otherwise."""
-    if not isinstance(potential, Fourier):
+    if hasattr(potential, "law"):
         return potential.law
     turn, axes, terms = 2 * arb.pi(), range(potential.n), potential.coefficients(digits)
     columns = []

@@ -86,9 +86,9 @@ class Potential(Dynamics):
 
     A subclass has evaluate(), `formula`, `curvature` and `lipschitz`: V(x), or V(y), in words,
     exactly; an upper bound of the spectral norm of V'' anywhere; and K with |V''(x) - V''(y)|
-    <= K |x - y|, in these norms.  If its orbits are to be proved it has also law(base, u): V, its gradient, and the entries 00, 01 and 11 of its Hessian, as balls of
-    python-flint that hold them at the point base + u, base rational numbers and u balls without
-    radius.
+    <= K |x - y|, in these norms.  If its orbits are to be proved it has also law(base, u): V, its
+    gradient, and the entries 00, 01 and 11 of its Hessian, as balls of python-flint that hold them
+    at the point base + u, base rational numbers and u balls without radius.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ class Fourier(Potential):
         ValueError: it has three angles, or is too large for doubles."""
         two_at_most(source.dimension)
         made = cls(name, start or (0.0,) * source.dimension, source, factor, period)
-        made.curvature
+        made.lipschitz                  # ValueError: too large
         return made if start else replace(made, start=made._maximum())
 
     def __reduce__(self):
@@ -202,26 +202,23 @@ class Fourier(Potential):
         return text if self.period != 1 or self.factor == "1" else \
             "s (%s), s = %s" % (text, self.factor)
 
-    @cached_property
-    def _bounds(self):
-        """Curvature and lipschitz: (2 pi)^m times the sum of |k|^m |amplitude|, m = 2 and 3, added
-        up exactly and a little more; as a double at least that, float() being off by 2^-53."""
-        size = self.scale_enclosure(30)[1]
-        sums = [size * sum(_root_up(sum(i * i for i in k)) ** m * abs(p)
-                           for (*k, _), p in zip(self.sum.waves, self.sum.amplitude))
-                for m in (2, 3)]
-        if max(sums) > 10 ** 300:
+    def _bound(self, m, turns):
+        """(2 pi)^m, rounded up, times the sum of |k|^m |amplitude|, added up exactly and a little
+        more; as a double at least that, float() being off by 2^-53 of it."""
+        bound = self.scale_enclosure(30)[1] * sum(
+            _root_up(sum(i * i for i in k)) ** m * abs(p)
+            for (*k, _), p in zip(self.sum.waves, self.sum.amplitude))
+        if bound > 10 ** 300:
             raise ValueError("the amplitudes of a Fourier sum are too large for doubles")
-        return [float(bound * x * (1 + Fraction(1, 2 ** 50)))
-                for bound, x in zip(sums, (Fraction("39.4785"), Fraction("248.0503")))]
+        return float(bound * Fraction(turns) * (1 + Fraction(1, 2 ** 50)))
 
-    @property
+    @cached_property
     def curvature(self) -> float:
-        return self._bounds[0]
+        return self._bound(2, "39.4785")
 
-    @property
+    @cached_property
     def lipschitz(self) -> float:
-        return self._bounds[1]
+        return self._bound(3, "248.0503")
 
     @property
     def scale(self) -> float:
