@@ -2,12 +2,12 @@
 build.py builds."""
 
 import math
-from itertools import chain
-from types import SimpleNamespace
 from decimal import Decimal
 from fractions import Fraction
 from importlib.machinery import ExtensionFileLoader
 from importlib.util import module_from_spec, spec_from_file_location
+from itertools import chain
+from types import SimpleNamespace
 from typing import Any, List, Sequence, Tuple
 
 from converse.model.exact import Number, decimal_text, exact
