@@ -261,24 +261,6 @@ def largest(d):
     return found
 
 
-def least(d, root=math.sqrt, quotient=lambda x, y: x / y if x > 0 and y > 0 else 0):
-    """The least eigenvalue of a symmetric matrix, in double precision; of arrays with a root and a
-    quotient of arrays."""
-    n = len(DIAGONAL[len(d)])
-    value = (trace(d) - root(spread(d))) / n
-    for _ in range(NEWTON_STEPS * (n > 2)):
-        value = value + quotient(*newton(d, value)[:2])
-    return value
-
-
-def eigenvector(d, value):
-    """The eigenvector of that eigenvalue, in double precision: the longest row of the cofactors."""
-    rows = full(newton(d, value)[2])
-    v = max(zip(rows, range(len(rows))), key=lambda pair: pair[0][pair[1]])[0]
-    length = math.hypot(*v)
-    return [x / length for x in v] if length else [1.0] + [0.0] * (len(rows) - 1)
-
-
 def forms(waves, weights):
     """The sum of weight k k' over the waves, of which there is one at least."""
     found = [weights[0] * x for x in entries(waves[0][0])]

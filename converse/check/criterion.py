@@ -5,12 +5,13 @@ import itertools
 import math
 
 from .arith import SINE_ERROR, dot, fixed_of, in_units, stiffness, upper_sqrt
+from .choice import worst_axis
 from .claim import ANGLE_AXES
 from .exact import Prism, PrismWave, attempt
 from .failures import NotConfirmed
 from .limits import MAX_BITS, MAX_HALVINGS, MAX_PIECES, SITE_PENALTIES
 from .torus import is_at_once, torus_bound
-from .tree import changed, trees, worst_axis
+from .tree import changed, trees
 
 BOUND_BITS = 256        # of the bound B; the thousands of bits of narrow cells do not improve it
 

@@ -9,10 +9,9 @@ in its `error`.  Bounds of errors are rounded upwards.
 
 import collections
 import itertools
-import math
 
-from .arith import (DIAGONAL, combined, dot, eigenvector, entries, least, pairs_of, times, turn_of,
-                    with_determinant)
+from .arith import (DIAGONAL, combined, dot, entries, pairs_of, times, turn_of, with_determinant)
+from .choice import test_vectors, trimmed
 from .limits import FIRST_TRY_SITES, MAX_SITES
 
 VECTOR_BITS = 28                        # of the vectors; the multipliers have twice as many
@@ -172,53 +171,6 @@ class Lane:
         self.d, self.f = beta, f
         self.r0, self.r = r, [(y >> bits) + 1 + z for y, z in zip(times([*map(abs, beta)], r), f)]
         return True
-
-
-def recursion(blocks, middle, tail):
-    """The recursion of step (C3) from the first of these matrices on: of each d, its inverse, and
-    where what it rests on begins, as it begins anew behind a place where d is not positive, and in
-    the middle, where the other lane begins, if there was such a place before."""
-    found, begin, inverse = [], 0, tail
-    for k, block in enumerate(blocks):
-        if k == middle and begin:
-            begin, inverse = k, tail
-        d = [x - y for x, y in zip(block, inverse)]
-        adjugate, det = with_determinant(d)
-        definite = d[0] > 0 and adjugate[-1] > 0 and det > 0
-        inverse = [x / det for x in adjugate] if definite else tail
-        found.append((d, inverse, begin))
-        begin = begin if definite else k + 1
-    return found
-
-
-def test_vectors(ahead, back, tail):
-    """Vectors n for the sites of both lanes, with these matrices: in doubles, as any n will do.
-
-    At each site the recursions from both ends of the orbit are compared, the one from the lane's
-    own end only where it has not failed.  Of each part that they cover without beginning anew, n at
-    the place where both together have the negative eigenvalue nearest to zero is its eigenvector,
-    and follows outwards.  The part with the lowest is taken: others may contradict next to nothing.
-    Where both fail, x* is taken if its eigenvalue is 64 times lower: of amplitudes in thousands.
-    """
-    blocks = [*reversed(back), *ahead]
-    left = recursion(blocks, len(back), tail)
-    right = recursion(blocks[::-1], len(ahead), tail)[::-1]
-    found, n = {}, [[0.0] * len(DIAGONAL[len(tail)])] * len(blocks)
-    for k, (block, (d, _, begin), (beyond, _, end)) in enumerate(zip(blocks, left, right)):
-        form = [x + y - z for x, y, z in zip(d, beyond, block)]
-        low = least(form)
-        if low < 0 and not (begin if k < len(back) else end):
-            found[begin, end] = max(found.get((begin, end), (-math.inf,)), (low, k, form))
-        elif low < 0 and k == len(back) - 1 and end:
-            found[begin, end] = low / 64, k, form
-    if found:
-        _, place, form = min(found.values())
-        n[place] = eigenvector(form, least(form))
-        for k in range(place, left[place][2], -1):
-            n[k - 1] = times(left[k - 1][1], n[k])
-        for k in range(place + 1, len(n) - right[place][2]):
-            n[k] = times(right[k][1], n[k - 1])
-    return [n[len(back):], n[:len(back)][::-1]]
 
 
 class SecondVariation:
@@ -391,10 +343,3 @@ def attempt(prism, l, penalties):
         return why, share
     scale = error + sum(moved) // 64
     return why, [x / scale + y for x, y in zip(moved, share)]
-
-
-def trimmed(vectors):
-    """The vectors without the zeros at the end."""
-    while vectors and not any(vectors[-1]):
-        vectors.pop()
-    return vectors

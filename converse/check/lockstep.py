@@ -15,13 +15,13 @@ import random
 from dataclasses import replace
 from fractions import Fraction
 
-from .arith import (DIAGONAL, ROWS, cofactors, dot, entries, fixed_of, least, newton, pairs_of,
+from .arith import (DIAGONAL, ROWS, cofactors, dot, entries, fixed_of, newton, pairs_of,
                     trace, turn_of, with_determinant)
+from .choice import least, worst_axis
 from .claim import ANGLE_AXES
 from .criterion import axes_of
 from .limits import FIRST_TRY_SITES, MAX_HALVINGS, MAX_PIECES, MAX_SITES, SITE_PENALTIES
 from .progress import complain
-from .tree import worst_axis
 
 np = None                               # numpy, once the fast path is wanted
 UNIT = 2.0 ** -53                       # the unit roundoff u of doubles

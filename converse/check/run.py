@@ -7,9 +7,11 @@ import operator
 import random
 import zlib
 from dataclasses import dataclass
+from fractions import Fraction
 
 from .claim import Claim
 from .container import read_container
+from .cover import symmetries_used
 from .criterion import check_at_once
 from .diagram import DIAGRAM, Diagram, drawn, proofs_of
 from .failures import NotConfirmed, Rejected, Unusable, named
@@ -20,8 +22,9 @@ from .portrait import PORTRAIT, Portrait, portrayed
 from .progress import Bar, reason
 from .proof_file import PROOF
 from .torus_file import TORUS, TorusClaim
-from .tree import check_mirror_images, check_tree
-from .words import claimed, not_excluded, report
+from .tree import check_mirror_images, check_tree, leaf_text
+from .version import __version__
+from .words import claimed, decimal_text, frame_text, range_text, successors
 from .workers import Problems, check_all
 
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
@@ -252,3 +255,47 @@ def check_leaves(problems, chosen, jobs, bar):
                 before = sum([claim.counts["proved"] for claim in problems.claims[:at]])
                 raise NotConfirmed(not_excluded(problems.claims[at], n - before, cell, why))
     return confirmed
+
+
+def not_excluded(claim, ordinal, cell, why):
+    """The message that a leaf is not confirmed, with the reason."""
+    return "%s is not excluded: %s; the claim is false or its proof beyond the limits of this " \
+        "checker" % (leaf_text(claim, "P", ordinal, cell), why)
+
+
+def report(claims, theorem, criterion, confirmed, pieces, doubles):
+    """The exit status and the lines of a report: the theorem, exactly as far as it was verified.
+
+    claims: of the cells of a map, of the columns of a portrait, or of a proof file and its parts;
+    theorem: what is claimed, in lines; criterion: of a proof file only; doubles: the number of
+    leaves that were tried in doubles.
+    """
+    proved, skipped, linked, undecided = [
+        sum([claim.counts.get(kind, 0) for claim in claims])
+        for kind in ("proved", "symmetric", "linked", "undecided")]
+    used = symmetries_used(claims[0]) if criterion else []      # else a part was rejected
+    lines = ["Verified" + ", for a part of the torus only" * (used is None) + " :", *theorem, "",
+             "Checker : converse-check " + __version__,
+             "Method : Loewner criterion, multipliers, %s%sin integers%s" % (
+                 "links between starting points, " * (linked > 0),
+                 ("in doubles%s and where these fail " % (
+                     " (%d leaves)" % doubles * (doubles < confirmed))) * (doubles > 0),
+                 " of %d bits" % criterion.fixed.bits if criterion else "")]
+    if criterion:
+        places, claim = 9, criterion.claim
+        bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
+        if used:
+            lines += ["Successors : %s; all others by %s" % (", ".join(
+                ["y' = " + frame_text(claim.rows)] * (claim.dimension > 1)
+                + [range_text(*ends) for ends in successors(claim)]), " and ".join(used))]
+        lines += ["x*%s : %s" % (part.where and " of " + part.where, " ".join(
+            map(decimal_text, part.xstar[:claim.dimension]))) for part in claims]
+        lines += ["B : %s" % decimal_text(Fraction(bound, 10 ** places))]
+        if claim.alone is not None and claim.dimension == 2:
+            lines += ["Alone : y%d, since no wave depends on both angles" % claim.alone]
+    lines += ["Leaves : %d, of which %d proved%s%s and %d symmetric" % (
+        proved + skipped + linked + undecided, proved,
+        ", %d linked to other parts" % linked * (linked > 0),
+        ", %d undecided" % undecided * (undecided > 0), skipped),
+        "Proved leaves checked : %d, in %d piece%s" % (confirmed, pieces, "s" * (pieces != 1))]
+    return PART if used is None else VERIFIED, lines

@@ -8,8 +8,8 @@ import math
 import operator
 from fractions import Fraction
 
-from .arith import (DIAGONAL, SINE_ERROR, dot, eigenvector, forms, in_units, largest, least,
-                    stiffness)
+from .arith import DIAGONAL, SINE_ERROR, dot, forms, in_units, largest, stiffness
+from .choice import eigenvector, least
 
 MAX_CELLS = 1 << 15                     # of the torus, about, when B is bounded
 TOLERANCE_BITS = {1: 20, 2: 20, 3: 6}   # by the number of angles; of three, cells are many

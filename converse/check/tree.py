@@ -10,7 +10,7 @@ from array import array
 
 from .claim import ANGLE_AXES, AXES, DIAGONALS, IDENTITY, LETTERS
 from .failures import NotConfirmed, Rejected, named
-from .limits import HALVINGS_APART_MAX, MATTERS_MIN, MAX_CUTS
+from .limits import MAX_CUTS
 
 ROOT = (0,) * len(AXES), (0,) * len(AXES)
 GO_ON = "; converse -r FILE goes on with the search"
@@ -18,16 +18,6 @@ GO_ON = "; converse -r FILE goes on with the search"
 
 def changed(values, axis, value):
     return values[:axis] + (value,) + values[axis + 1:]
-
-
-def worst_axis(blame, halved):
-    """The place of the axis that matters most, from how much each matters; or if it was halved far
-    more often than another that matters, of the one that was halved least."""
-    worst = blame.index(max(blame))
-    often = halved[worst] - HALVINGS_APART_MAX
-    others = [(k, n) for n, k in enumerate(halved)
-              if k < often and blame[n] >= blame[worst] * MATTERS_MIN]
-    return min(others)[1] if others else worst
 
 
 def leaves(tree, axes=AXES, kinds="PSU"):

@@ -5,9 +5,6 @@ from fractions import Fraction
 
 from .claim import ANGLES, RANGES, THESIS, Wave, present
 from .cover import symmetries_used
-from .limits import PART, VERIFIED
-from .tree import leaf_text
-from .version import __version__
 
 WIDTH = 100                             # characters of a line
 NUMBERS = {1: "one angle", 2: "two angles", 3: "three angles"}
@@ -187,47 +184,3 @@ def multiples(claim, names):
         return "%s %s %s (since B > 10/3)" % (name, "><"[end < 0], exact_text(end))
     return "multiple of %s, by a factor >= 1 (since B > 10/3)" % (
         "V at %s = %s" % (name, exact_text(end)) if name else "such a V")
-
-
-def not_excluded(claim, ordinal, cell, why):
-    """The message that a leaf is not confirmed, with the reason."""
-    return "%s is not excluded: %s; the claim is false or its proof beyond the limits of this " \
-        "checker" % (leaf_text(claim, "P", ordinal, cell), why)
-
-
-def report(claims, theorem, criterion, confirmed, pieces, doubles):
-    """The exit status and the lines of a report: the theorem, exactly as far as it was verified.
-
-    claims: of the cells of a map, of the columns of a portrait, or of a proof file and its parts;
-    theorem: what is claimed, in lines; criterion: of a proof file only; doubles: the number of
-    leaves that were tried in doubles.
-    """
-    proved, skipped, linked, undecided = [
-        sum([claim.counts.get(kind, 0) for claim in claims])
-        for kind in ("proved", "symmetric", "linked", "undecided")]
-    used = symmetries_used(claims[0]) if criterion else []      # else a part was rejected
-    lines = ["Verified" + ", for a part of the torus only" * (used is None) + " :", *theorem, "",
-             "Checker : converse-check " + __version__,
-             "Method : Loewner criterion, multipliers, %s%sin integers%s" % (
-                 "links between starting points, " * (linked > 0),
-                 ("in doubles%s and where these fail " % (
-                     " (%d leaves)" % doubles * (doubles < confirmed))) * (doubles > 0),
-                 " of %d bits" % criterion.fixed.bits if criterion else "")]
-    if criterion:
-        places, claim = 9, criterion.claim
-        bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
-        if used:
-            lines += ["Successors : %s; all others by %s" % (", ".join(
-                ["y' = " + frame_text(claim.rows)] * (claim.dimension > 1)
-                + [range_text(*ends) for ends in successors(claim)]), " and ".join(used))]
-        lines += ["x*%s : %s" % (part.where and " of " + part.where, " ".join(
-            map(decimal_text, part.xstar[:claim.dimension]))) for part in claims]
-        lines += ["B : %s" % decimal_text(Fraction(bound, 10 ** places))]
-        if claim.alone is not None and claim.dimension == 2:
-            lines += ["Alone : y%d, since no wave depends on both angles" % claim.alone]
-    lines += ["Leaves : %d, of which %d proved%s%s and %d symmetric" % (
-        proved + skipped + linked + undecided, proved,
-        ", %d linked to other parts" % linked * (linked > 0),
-        ", %d undecided" % undecided * (undecided > 0), skipped),
-        "Proved leaves checked : %d, in %d piece%s" % (confirmed, pieces, "s" * (pieces != 1))]
-    return PART if used is None else VERIFIED, lines

@@ -85,7 +85,7 @@ TESTS = {
     "check/exact": ["check/test_exact.py", "test_check.py: exact or one_bound", BOTH_PATHS],
     "check/links": PARTS,
     "check/lockstep": ["test_check.py: lockstep or lanes or roundings or term or turns or sums or "
-                       "slopes or centres", *PARTS, BOTH_PATHS],
+                       "slopes or centres", "test_mirror.py", *PARTS, BOTH_PATHS],
     "check/container": ["test_check.py: header or numbers or control or versions",
                         "check/test_diagram.py", "test_portrait.py: altered"],
     "check/diagram": ["check/test_diagram.py", "test_value.py"],

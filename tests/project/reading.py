@@ -11,7 +11,7 @@ from converse.diagram import Diagram
 from converse.prover.portrait import portray
 
 FOLDER = Path(check.__file__).parent
-BESIDE = {"run", "workers", "processes", "progress", "signals", "command", "words"}
+BESIDE = {"run", "workers", "processes", "progress", "signals", "command", "words", "choice"}
 
 
 def functions_of(path):
