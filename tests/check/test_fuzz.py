@@ -16,7 +16,8 @@ from conftest import around
 from files import sealed, tree_of
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
-from test_check import definite, true_bound, with_field, with_tree
+from claims import definite, true_bound
+from trees import with_field, with_tree
 from test_tori import BODY as TORUS
 
 import converse

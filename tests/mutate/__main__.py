@@ -51,7 +51,7 @@ SHARP = ["test_loewner.py", "test_waves.py", "test_search.py"]
 TORI = ["test_certificate.py", "tori/test_proved.py"]
 FINDERS = ["test_orbits.py", "test_orbits_fail.py", "orbits/test_proved.py"]
 PARTS = ["test_parts.py", "test_part_shifts.py"]
-BOTH_PATHS = "test_check.py: both_paths or confirms or forged or minimizes"
+BOTH_PATHS = "test_check*.py: both_paths or confirms or forged or minimizes"
 TESTS = {
     "arith/apm": NUMBERS, "arith/special": ["test_special.py", *NUMBERS],
     "arith/sine": ["test_loewner.py", "test_gappa.py", "test_waves.py"], "arith/lanes": SHARP,
@@ -74,26 +74,26 @@ TESTS = {
     "check/series": ["test_tori_bounds.py", "test_tori.py"],
     "check/tori": ["test_tori_bounds.py", "test_tori.py"], "check/torus_file": ["test_tori.py"],
     "check/arith": ["check/test_angles.py: matrices or frames_of",
-                    "test_check.py: sincos or taylor or roots",
+                    "test_check*.py: sincos or taylor or roots",
                     "check/test_exact.py", "check/test_angles.py"],
-    "check/claim": ["test_check.py: numbers or cells or prisms_cover or corners or header",
+    "check/claim": ["test_check*.py: numbers or cells or prisms_cover or corners or header",
                     *PARTS, "check/test_angles.py: one_angle or wrong", BOTH_PATHS],
     "check/cover": ["test_parts.py: enough or centre or reversal",
                     "check/test_angles.py: periods or too_short", "test_portrait.py"],
-    "check/criterion": ["test_check.py: pivot or at_once or prisms_cover or halve or weak",
+    "check/criterion": ["test_check*.py: pivot or at_once or prisms_cover or halve or weak",
                         *PARTS, BOTH_PATHS],
-    "check/exact": ["check/test_exact.py", "test_check.py: exact or one_bound", BOTH_PATHS],
+    "check/exact": ["check/test_exact.py", "test_check*.py: exact or one_bound", BOTH_PATHS],
     "check/links": PARTS,
-    "check/lockstep": ["test_check.py: lockstep or lanes or roundings or term or turns or sums or "
+    "check/lockstep": ["test_check*.py: lockstep or lanes or roundings or term or turns or sums or "
                        "slopes or centres", "test_mirror.py", *PARTS, BOTH_PATHS],
-    "check/container": ["test_check.py: header or numbers or control or versions",
+    "check/container": ["test_check*.py: header or numbers or control or versions",
                         "check/test_diagram.py", "test_portrait.py: altered"],
     "check/diagram": ["check/test_diagram.py", "test_value.py"],
     "check/portrait": ["test_portrait.py"],
-    "check/proof_file": ["test_check.py: header or numbers or trees or theorem or potentials or "
+    "check/proof_file": ["test_check*.py: header or numbers or trees or theorem or potentials or "
                          "versions or at_once", *PARTS],
-    "check/torus": ["test_check.py: bound_over or at_once", "check/test_exact.py: few_bits"],
-    "check/tree": ["test_check.py: trees or flipped or mirror or header or symmetric or "
+    "check/torus": ["test_check*.py: bound_over or at_once", "check/test_exact.py: few_bits"],
+    "check/tree": ["test_check*.py: trees or flipped or mirror or header or symmetric or "
                    "coefficients or halved", *PARTS],
     "tori": TORI, "tori/field": ["test_rotation.py", *TORI],
 }
@@ -238,32 +238,35 @@ class Base:
                     return "the same program"
             for name in tests_of(place.name):
                 name, _, words = name.partition(": ")
-                file = next((ROOT / "tests").rglob(name))
-                why = failure(file, work, words)
+                files = sorted((ROOT / "tests").rglob(name))
+                why = failure(files, work, words)
                 if why is None:
                     continue
-                if not self.passes(file, why):
+                if not self.passes(files, why):
                     return "no verdict: %s fails without it, too, in %s" % (name, why)
-                return "caught by %s, %s" % (name, why)
+                return "caught by " + (why.replace("::", ", ", 1) if "::" in why else
+                                       "%s, %s" % (name, why))
         return "survived"
 
-    def passes(self, file, why):
-        """Does the test that failed, or all of a file that crashed, pass without a mutant?"""
-        test = file if why in (CRASH, ENDLESS) else "%s::%s" % (file, why)
+    def passes(self, files, why):
+        """Does the test that failed, or all of the files that crashed, pass without a mutant?"""
+        tests = files if why in (CRASH, ENDLESS) else [
+            file.with_name(why) for file in files if why.startswith(file.name)]
         with self.lock:
-            if test not in self.passed:
-                self.passed[test] = failure(test, self.unchanged) is None
-        return self.passed[test]
+            if why not in self.passed:
+                self.passed[why] = failure(tests, self.unchanged) is None
+        return self.passed[why]
 
 
 CRASH, ENDLESS = "a crash", "which has no end"
 
 
-def failure(test, work, words=""):
-    """The name of the first test that fails with what was built in work, of those with the words;
+def failure(tests, work, words=""):
+    """The first of these tests that fails with what was built in work, of those with the words;
     CRASH, ENDLESS or None."""
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--no-header",
-               "--rootdir", str(ROOT), "-c", str(ROOT / "pyproject.toml"), "-k", words, str(test)]
+               "--rootdir", str(ROOT), "-c", str(ROOT / "pyproject.toml"), "-k", words,
+               *map(str, tests)]
     csrc = work / "csrc"                # of a mutant of the core
     environment = {**os.environ, "PYTEST_ADDOPTS": "", "PYTHONPATH": str(work),
                    "PYTHONDONTWRITEBYTECODE": "1", "CONVERSE_CONSOLE": str(work / "console.so"),
@@ -277,7 +280,10 @@ def failure(test, work, words=""):
         return None
     failed = [line for line in done.stdout.splitlines()
               if line.startswith(("FAILED", "ERROR")) and "::" in line]
-    return failed[0].split("::", 1)[1].split(" - ")[0] if failed else CRASH
+    if not failed:
+        return CRASH
+    path, _, test = failed[0].split(" ", 1)[1].split(" - ")[0].partition("::")
+    return "%s::%s" % (Path(path).name, test)
 
 
 def reason(place):
