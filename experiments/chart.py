@@ -351,7 +351,7 @@ CHARTS = {
 def chart(name, rows, caption=True):
     """A chart of these rows, as the bytes of an SVG file; with a caption or without."""
     height = 4.3                        # inches
-    with output.figure(plot.CHART, figsize=(7.2, height)) as figure:
+    with output.figure(output.CHART, figsize=(7.2, height)) as figure:
         words = CHARTS[name][2](figure, rows)
         figure.subplots_adjust(left=0.11, right=0.97, bottom=0.5 / height, top=1 - 0.4 / height)
         if caption:

@@ -105,7 +105,7 @@ def measure(eps):
 
 def draw(rows):
     """The figure, as the bytes of an SVG file."""
-    with output.figure(plot.CHART, figsize=(6, 3.8)) as figure:
+    with output.figure(output.CHART, figsize=(6, 3.8)) as figure:
         axes = figure.subplots()
         for name, column, line, colour, words, place in CURVES:
             mine = [row for row in rows if row[:2] == (DRAWN, name)]

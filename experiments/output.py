@@ -4,8 +4,14 @@ import contextlib
 import csv
 import io
 
+from converse.draw.style import STYLE
 from converse.storage import files
 from converse.storage.files import ConverseError
+
+CHART = {                               # of pictures in which values are read off
+    **STYLE, "axes.grid": True, "axes.axisbelow": True, "grid.color": "0.92",
+    "grid.linewidth": 0.6, "lines.markersize": 5,
+}
 
 
 def text(columns, rows):

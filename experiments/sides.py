@@ -135,7 +135,7 @@ def nearer(rows, name, side):
 
 def draw(rows):
     """The picture, as the bytes of an SVG file."""
-    with output.figure(plot.CHART, figsize=(7.2, 3.9)) as figure:
+    with output.figure(output.CHART, figsize=(7.2, 3.9)) as figure:
         panels = figure.subplots(1, 2, gridspec_kw={"wspace": 0.32})
         for axes, column, words in ((panels[0], 3, "CPU time (seconds)"),
                                     (panels[1], 5, "bytes of the proof file or the certificate")):

@@ -85,7 +85,7 @@ def measure(kind, eps, digits):
 
 def draw(measured):
     """The figure, as the bytes of an SVG file; each line goes through an orbit's steepest pair."""
-    with output.figure(plot.CHART, figsize=(6, 3.8)) as figure:
+    with output.figure(output.CHART, figsize=(6, 3.8)) as figure:
         axes = figure.subplots()
         for (state, _, _, distance, momentum), colour, words, at in (
                 (measured[0], "0.45", "a smooth surface", (1.6e-2, 1.2e-5)),

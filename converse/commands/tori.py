@@ -99,9 +99,7 @@ def _check_outputs(options, locks):
         files.check_writable(options.backup, regular=True)
         locks.enter_context(files.Lock(options.backup))
         for path in options.backup, _found(options):
-            if os.path.exists(path) and os.path.getsize(path) and not (
-                    options.restore is not None and files.same(path, options.restore)):
-                raise ConverseError("%s: exists; name another file or remove it" % path)
+            files.check_new(path, options.restore)
     check_figure(options, options.input, options.backup, options.restore)
 
 

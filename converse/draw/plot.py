@@ -15,8 +15,7 @@ from ..prover import tree
 from ..storage import files
 from ..version import __version__
 from . import captions
-from .style import (BLUE, CHART, DARK, GREEN, GREY, ORANGE, PURPLE, SALT, SKY, STYLE,  # noqa: F401
-                    VERMILLION)
+from .style import BLUE, DARK, GREEN, GREY, ORANGE, PURPLE, SALT, STYLE, VERMILLION  # noqa: F401
 
 FORMATS = "svg", "png", "pdf"           # of all pictures, as their names end
 COLOURS = {"P": "0.35", "S": "0.85", "a": ORANGE, "?": "1.0", "U": "#f4b183"}

@@ -1,7 +1,7 @@
 """The colours and the style of all pictures, for matplotlib.  The user's settings do not matter."""
 
 # The colours of Okabe and Ito, which the colour-blind can tell apart, and greys.
-BLUE, SKY, ORANGE, VERMILLION = "#0072b2", "#56b4e9", "#e69f00", "#d55e00"
+BLUE, ORANGE, VERMILLION = "#0072b2", "#e69f00", "#d55e00"
 GREEN, PURPLE, DARK, GREY = "#009e73", "#cc79a7", "0.1", "0.6"
 
 SALT = {"svg.hashsalt": "converse"}     # The same picture gives the same file.
@@ -10,8 +10,4 @@ STYLE = {                               # of all pictures except the prisms of a
     "ytick.labelsize": 8, "legend.fontsize": 8, "legend.title_fontsize": 8,
     "legend.framealpha": 0.85, "legend.edgecolor": "0.8", "lines.linewidth": 1,
     "axes.linewidth": 0.6, "axes.spines.top": False, "axes.spines.right": False,
-}
-CHART = {                               # of pictures in which values are read off
-    **STYLE, "axes.grid": True, "axes.axisbelow": True, "grid.color": "0.92",
-    "grid.linewidth": 0.6, "lines.markersize": 5,
 }
