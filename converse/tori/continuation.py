@@ -19,16 +19,14 @@ from .effort import LAYER_BYTES, REFINING_BYTES, SOLVING, Work, free_memory
 from .newton import EPSILON, Mesh, best_frame, default_frame
 from .regular import Orbit, Orbits
 from .rotation import Rotation
-from .torus import Torus, decay
+from .torus import FLAT, Torus, rates_of
 
 ROOM = 0.4                  # This part of a mesh's box of modes is used, so that products fit.
-FLAT = 5.0                  # Series that decay at this rate or faster have one or two modes.
 POINTS = 1 << 21            # A mesh has at most these points.
 # Steps are parts of the way to the amplitudes asked for.
 FIRST_STEP, SMALL_STEP, LEAST_STEP = 0.25, 0.01, 1e-5
 SPARE = 1.25                # Factor of the log of the least coefficient: the next step needs more.
 ENOUGH = 1e-9               # Smaller coefficients do not count on the way.
-ASPECTS = 1.0, 0.25, 0.4, 0.6, 1.6, 2.5, 4.0, 6.0   # Ratios of two rates of decay that are tried.
 ITERATIONS = 9              # Newton's method takes at most these steps.
 USEFUL, STALLED = 1e-7, 1e-12   # Newton's method may end at the first; at the second no mode lacks.
 ENLARGED = 8                # This often the number of modes is raised.
@@ -141,7 +139,7 @@ class Way:
         method stalls: `finished` adds the others.  Where there is none, the least error that is
         left on meshes of so many points; infinity: Newton's method fails."""
         n, amplitude = self.potential.dimension, self.amplitude(1.0)
-        k, c = orbits.series(orbit, self.rotation, REACH[n])
+        k, c = orbits.series(orbit, self.rotation.floats, REACH[n])
         if n == 2:
             self.frame = best_frame(k, abs(c).max(0))
         box = np.full(len(self._straight().mesh.sizes), float(REACH[n]))
@@ -261,8 +259,7 @@ class Way:
         seen = np.where((size > noise) & mesh.inside.ravel(), size, 0)
         rates, reach = np.full(len(mesh.sizes), FLAT), 8 * FLAT
         if seen.any():
-            rates = max((_rates(mesh, seen, q) for q in ASPECTS[:None if len(mesh.m) == 2 else 1]),
-                        key=np.prod)
+            rates = rates_of(abs(mesh.m).reshape(len(mesh.m), -1), seen)
             reach = SPARE * max(log(seen.max() / noise[far <= ROOM].max()), 0) + 6
         bend = float(np.linalg.norm(size * (mesh.k.reshape(len(mesh.k), -1) ** 2.0).sum(0)))
         return Found(part, self.amplitude(part), mesh, u, ellipse(mesh, rates, reach),
@@ -301,13 +298,6 @@ def break_up(bends: Sequence[Tuple[float, float]]) -> Optional[float]:
             return None
         ends.append(off[best])
     return float(bends[-1][0] + ends[0]) if abs(ends[0] - ends[1]) < AGREED * ends[0] else None
-
-
-def _rates(mesh, seen, q):
-    """The rates at which coefficients decay with |m_0| and |m_1|, the second q times the first."""
-    aspect = np.array([1.0, q])[:len(mesh.m)]
-    rate = decay(sum(a * abs(m) for a, m in zip(aspect, mesh.m)).ravel(), seen)
-    return aspect * min(FLAT / aspect.max(), max(rate, 1e-9))
 
 
 def ellipse(mesh, rates, reach):

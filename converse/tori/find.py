@@ -1,16 +1,16 @@
 """Finds invariant tori, without proof: for one potential, or for all potentials of a range."""
 
-from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from math import ceil, exp, inf, log, log2
-from typing import Callable, List, NamedTuple, Optional, Tuple, Union
+from typing import Callable, List, Optional, Tuple, Union
 
 import numpy as np
 
 from ..model.exact import Ends, short_text
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
+from ..storage.files import ConverseError
 from .continuation import POINTS, Found, NotFound, Way, ellipse, newton, place
 from .effort import (BALLS, CHOOSING, LOOKING, PLANNING, REFINING, SINGLE, SOLVING, VERIFYING,
                      TimeIsUp, Work, balls, limited)
@@ -117,15 +117,6 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str, N
     return _Pieces(search, way.rotation, margin).cover(found)
 
 
-class _Rough(NamedTuple):
-    """The torus of an orbit, about, and how many modes it will need, about."""
-
-    modes: int
-    way: Way
-    found: Found
-    orbit: Orbit
-
-
 class Search:
     """Looks for tori of a problem, each at the lower end of its range, if it has one."""
 
@@ -228,9 +219,8 @@ class Search:
                 listed = [with_rotation(orbits, each.vector, each)._replace(vector=each.vector)
                           for each in listed[:ENOUGH]]
             try:
-                ranked = self._ranked(orbits, listed, s * sign)
-                listed = [each.orbit for each in ranked[:1]] or listed
-                way, found = self._first(ranked, s * sign)
+                way, found, orbit = self._best(orbits, listed, s * sign)
+                listed = [orbit]
                 return _single(found, way, MARGIN)
             except (NotFound, TimeIsUp) as error:
                 failure = error
@@ -246,7 +236,7 @@ class Search:
         orbits = self._orbits(s)
         seen, listed = self._regular(orbits, s)
         try:
-            return self._first(self._ranked(orbits, listed, s), s)
+            return self._best(orbits, listed, s)[:2]
         except NotFound:
             raise NotFound("at %s %s; a rotation vector may be given (converse-tori --rotation)" % (
                 place(self.at(s), self.amplitude(s)), "%d regular orbits are seen, but no torus "
@@ -271,32 +261,32 @@ class Search:
             return 0.0 if isinstance(found, Found) else found
         return seen, apart(sorted(near_vectors(orbits, seen[:NEAR]), key=error), APART)[:SMOOTHEST]
 
-    def _ranked(self, orbits: Orbits, listed: List[Orbit], s: Union[Fraction, int]) -> List[_Rough]:
-        """Tori of the first orbits that have one.  Those that need the fewest modes come first."""
-        made: List[_Rough] = []
+    def _best(self, orbits: Orbits, listed: List[Orbit],
+              s: Union[Fraction, int]) -> Tuple[Way, Found, Orbit]:
+        """Of the tori of the first orbits that have one the one that needs the fewest modes."""
+        n, rough, made = self.potential.dimension, 0, []
+        failure: ConverseError = NotFound("no torus was made of the regular orbits", 0.0,
+                                          self.amplitude(s).tolist())
         for orbit in listed:
             assert orbit.vector is not None
             try:
                 self.tell("looking for a torus near (%s)" % ", ".join(
-                    "%.6f" % w for w in orbit.rotation), PLANNING[self.potential.dimension])
-                way, rough = self._made(orbits, orbit, orbit.vector, s)
-                made.append(_Rough(plan(rough).modes(rough.mesh), way, rough, orbit))
-            except (NotFound, TimeIsUp) as error:
-                if isinstance(error, TimeIsUp) and not made:
-                    raise
-            if len(made) == ENOUGH:
+                    "%.6f" % w for w in orbit.rotation), PLANNING[n])
+                way, found = self._made(orbits, orbit, orbit.vector, s)
+                rough += 1
+                modes = plan(found).modes(found.mesh)
+                self.tell("looking for its modes, about %d" % modes, 0.0,
+                          VERIFYING[n] * NEEDED[n] * modes)
+                made.append((way, way.finished(found), orbit))
+            except TimeIsUp as error:
+                failure = error
+            except NotFound:
+                pass
+            if rough == ENOUGH:
                 break
-        return sorted(made, key=lambda each: each.modes)
-
-    def _first(self, ranked: List[_Rough], s: Union[Fraction, int]) -> Tuple[Way, Found]:
-        """The first torus with all modes that doubles can tell."""
-        n = self.potential.dimension
-        for modes, way, rough, _ in ranked:
-            self.tell("looking for a torus of about %d modes" % modes, 0.0,
-                      VERIFYING[n] * NEEDED[n] * modes)
-            with suppress(NotFound):
-                return way, way.finished(rough)
-        raise NotFound("no torus was made of the regular orbits", 0.0, self.amplitude(s).tolist())
+        if not made:
+            raise failure
+        return min(made, key=lambda each: plan(each[1]).modes(each[1].mesh))
 
 
 def _doubles(numbers):

@@ -177,11 +177,14 @@ def _quotient(field, weights, above, below):
 
 # ---- two angles
 
-def cubics(target: Sequence[Union[Fraction, float]], within: Fraction,
-           count: int = COMPARED) -> List[Rotation]:
+def cubics(target: Sequence[Union[Fraction, float]], within: Fraction, count: int = COMPARED,
+           norm: np.ndarray = np.eye(2)) -> List[Rotation]:
     """Vectors of both fields within some distance of a place, those with the best divisors first,
-    as far as doubles can tell."""
+    as far as doubles can tell.
+
+    norm -- a matrix of determinant 1 or -1: |k| adds the absolute values of norm.k"""
     target, delta = [Fraction(w) for w in target], _delta(2, within)
+    corners = np.linalg.inv(norm).T             # of the ball |k| <= 1
     kept: List[tuple] = []
     for polynomial in FIELDS:
         bases, values = _bases(polynomial)
@@ -189,13 +192,14 @@ def cubics(target: Sequence[Union[Fraction, float]], within: Fraction,
             q, *p = (combined(column, values[:, 0].real) for column in zip(*triangle))
             close = np.flatnonzero(np.all([abs(p_i - float(w) * q) <= float(within) * q
                                            for p_i, w in zip(p, target)], 0))
-            omega, score = _far_part(values[..., close], triangle, delta)
+            omega, score = _far_part(values[..., close], triangle, delta, corners)
             best = np.argsort(score, kind="stable")[:SEEN]
             kept += zip(score[best], omega[:, best].T, repeat(polynomial), close[best],
                         repeat(triangle))
     kept = sorted(kept, key=lambda each: each[0])[:POOLED]
     k = _modes(2, NEAREST)
-    near = _near_part(np.array([each[1] for each in kept]).reshape(-1, 2), k, abs(k).sum(1), delta)
+    near = _near_part(np.array([each[1] for each in kept]).reshape(-1, 2), k,
+                      abs(k @ norm.T).sum(1), delta)
     chosen: List[Rotation] = []
     for j in np.argsort(np.maximum(near, [each[0] for each in kept]), kind="stable"):
         _, omega, polynomial, basis, triangle = kept[j]
@@ -265,12 +269,12 @@ def _triangles(target, within) -> Iterator[Triangle]:
             return
 
 
-def _far_part(values, triangle, delta) -> Tuple[np.ndarray, np.ndarray]:
+def _far_part(values, triangle, delta, corners) -> Tuple[np.ndarray, np.ndarray]:
     """(vectors, about what large k contribute to c(delta) of each), in doubles; values: (weights,
     conjugates, number)."""
     q, *p = (combined(column, values) for column in zip(*triangle))
     omega = np.array(p) / q                                     # (component, conjugate, number)
-    (x0, x1), (y0, y1) = omega[:, 1:] - omega[:, :1]
+    (x0, x1), (y0, y1) = [combined(corner, omega[:, 1:] - omega[:, :1]) for corner in corners]
     # The form (x0 v + y0 w)(x1 v + y1 w) is a v^2 + b v w + c w^2; q has the norm of sum c_i q_i.
     a, b, c = (x0 * x1).real, (x0 * y1 + x1 * y0).real, (y0 * y1).real
     largest = np.maximum(abs(a), abs(c))

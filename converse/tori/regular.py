@@ -24,7 +24,9 @@ import numpy as np
 from .._native import ffi, lib
 from ..model.potential import FourierSum
 from .nearest import cubics, noble
+from .newton import best_frame
 from .rotation import Rotation
+from .torus import rates_of
 
 GRID = 64                               # points of an axis, among which x* is chosen
 LIFTED = 1 << 14                        # points of an orbit, of which a torus is made
@@ -47,6 +49,7 @@ CHILDREN = 4
 # Near a rotation vector, within this, NEIGHBOURS vectors of fields are looked for.
 WITHIN, NEIGHBOURS = Fraction(1, 1000), 8
 WALK, WALKED = 10, 1 << 14               # steps to a rotation vector, points of a half
+SEEN = 24                               # |k_i| up to which the decay of their modes is seen
 FAR = 0.003                             # |k.omega - m| |k|^2 is larger for good vectors.
 APART = 3e-3                            # Vectors that are listed differ by so much.
 CHAOTIC = 1e-5                          # Orbits that change more are not listed.
@@ -120,13 +123,13 @@ class Orbits:
                     ffi.cast("double(*)[2]", ffi.from_buffer(found)))
         return found[:, :self.n]
 
-    def series(self, orbit: Orbit, rotation: Rotation,
+    def series(self, orbit: Orbit, rotation: Sequence[float],
                reach: int) -> Tuple[np.ndarray, np.ndarray]:
         """(modes k (n, count), coefficients (n, count)) of the u with x = theta + u(theta) along an
         orbit, |k_i| up to a reach: of k and -k one.  They are weighted means over the orbit; theta
         is counted from where u has no mean."""
         points = self.lift(orbit.momentum, LIFTED)
-        theta = np.arange(LIFTED)[:, None] * np.array(rotation.floats)
+        theta = np.arange(LIFTED)[:, None] * np.array(rotation)
         u = np.arange(0.5, LIFTED) / LIFTED
         weight = np.exp(-1 / (u * (1 - u)))
         u = 2 * pi * (points - theta) * (weight / weight.sum())[:, None]
@@ -156,9 +159,19 @@ def regular(orbits: Orbits) -> List[Orbit]:
 def near_vectors(orbits: Orbits, seen: Sequence[Orbit]) -> List[Orbit]:
     """Orbits of two angles with exact rotation vectors, several near each of those that are seen:
     these may all be regular to rounding, and most vectors near them lie in gaps between the tori.
-    """
-    known = [with_rotation(orbits, vector, near)._replace(vector=vector) for near in seen
-             for vector in cubics(near.rotation, WITHIN, NEIGHBOURS)]
+
+    The small divisors that matter are those of modes that a torus has.  So lengths are counted as
+    the coefficients of the orbit decay."""
+    known = []
+    for near in seen:
+        k, c = orbits.series(near, near.rotation, SEEN)
+        size = abs(c).max(0)
+        frame = best_frame(k, size)
+        m = abs(np.array(frame) @ k)
+        norm = np.diag(rates_of(m, np.where(size > CHAOTIC * size.max(), size, 0))) @ frame
+        norm /= abs(np.linalg.det(norm)) ** 0.5
+        known += [with_rotation(orbits, vector, near)._replace(vector=vector)
+                  for vector in cubics(near.rotation, WITHIN, NEIGHBOURS, norm)]
     return [orbit for orbit in known if orbit.change < CHAOTIC]
 
 

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 Part = Optional[Tuple[Fraction, ...]]
 NO_RANGE = Fraction(0), Fraction(0)
+FLAT = 5.0                  # Series that decay at this rate or faster have one or two modes.
+ASPECTS = 1.0, 0.25, 0.4, 0.6, 1.6, 2.5, 4.0, 6.0   # Ratios of two rates of decay that are tried.
 ENTRIES = 10 ** 6           # A matrix of modes and angles has at most about these entries.
 
 
@@ -331,3 +333,14 @@ def decay(far: np.ndarray, size: np.ndarray) -> float:
     outer = hull[-1][0] / 2
     (x0, y0), (x1, y1) = max((p for p in hull if p[0] <= outer), default=hull[0]), hull[-1]
     return (y0 - y1) / (x1 - x0) if x1 > x0 else np.inf
+
+
+def rates_of(m: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """The rates at which sizes fall with one number m or with two, |m_0| and |m_1| of shape
+    (numbers, count); of the pairs of rates that they permit, about, that of the largest product."""
+    found = []
+    for aspect in ASPECTS[:None if len(m) == 2 else 1]:
+        each = np.array([1.0, aspect])[:len(m)]
+        rate = decay(sum(a * row for a, row in zip(each, m)), sizes)
+        found.append(each * min(FLAT / each.max(), max(rate, 1e-9)))
+    return max(found, key=np.prod)

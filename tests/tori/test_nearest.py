@@ -2,10 +2,12 @@
 
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
+from converse.check.field import Divisors, Norm
 from converse.tori import nearest, read_rotation
-from converse.tori.nearest import rotation_of
+from converse.tori.nearest import cubics, rotation_of
 
 
 @pytest.mark.parametrize("number, tolerance", [("0.618", "1/1000"), ("0.4", "1/100"),
@@ -63,3 +65,19 @@ def test_a_continued_fraction_is_read(text, same):
 def test_what_is_no_continued_fraction_is_refused(text):
     with pytest.raises(ValueError, match="continued fraction|quotients"):
         read_rotation(text)
+
+
+def test_small_divisors_count_by_the_norm_of_the_torus():
+    """Modes of a torus of the line at epsilon = 0.011 are long along k0 = k1.  In this norm the
+    checker finds an eighth of the loss that the vectors nearby have which are best in |k0| + |k1|.
+    """
+    frame, alpha = ((1, 1), (1, -1)), (1, 6)
+    norm = np.diag(alpha) @ frame / 12 ** 0.5
+
+    def loss(rotation):
+        length = Norm(frame, alpha, ((1, 0), (0, 1)))
+        return Divisors(rotation.field, rotation.vector, length).loss(Fraction("0.0015"))
+
+    place = Fraction("0.2927"), Fraction("0.2982"), Fraction("0.001")
+    plain, fitting = cubics(place[:2], place[2], 1), cubics(place[:2], place[2], 1, norm)
+    assert loss(fitting[0]) < loss(plain[0]) / 8
