@@ -311,7 +311,7 @@ def refuted(claim, cases):
 
 
 @pytest.mark.usefixtures("impatient")
-@settings(MANY, max_examples=40 * TORTURE)
+@settings(MANY, max_examples=25 * TORTURE)
 @given(which=st.integers(0, 6), changes=changes)
 @example(2, [("stretch", "20", None)])
 @example(6, [("scale", "-1", None)])
