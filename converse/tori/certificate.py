@@ -84,7 +84,7 @@ def text(tori: Sequence[Torus]) -> str:
     first = tori[0]
     potential, rotation, strip = first.potential, first.rotation, first.strip
     if strip is None or any(torus.strip is None for torus in tori):
-        raise ValueError("the torus does not say in what strip it is to be verified")
+        raise ValueError("the torus has no strip in which it is to be verified")
     parts = [()] * len(potential.waves) if first.part is None else [(p,) for p in first.part]
     lines = [FIRST_LINE, "program: converse " + __version__, "dimension: %d" % first.dimension]
     lines += ["wave: %d %d %s" % wave + "".join(" " + decimal_text(x) for x in (p, *part))

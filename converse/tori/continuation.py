@@ -43,7 +43,7 @@ FITTED, FEWER, MISFIT, AGREED = 6, 4, 0.02, 0.3
 
 
 class NotFound(ConverseError):
-    """No torus was found; the text says why, and what was reached.
+    """No torus was found; the text gives the reason and the last torus.
 
     Attributes
     ----------

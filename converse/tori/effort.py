@@ -90,34 +90,18 @@ def some(seconds: float) -> str:
 
 
 def free_memory(root: str = "/") -> float:
-    """Bytes that are free on the machine and in all control groups of this process, such as a
-    container; 4 GB if the system does not say."""
+    """Bytes that are free on the machine and in the container, if this is one; 4 GB if the system
+    does not say."""
     free = [1024 * _number(os.path.join(root, "proc/meminfo"), "MemAvailable:")]
-    for group in _control_groups(root):
-        for limit, usage, cache in (
-                ("memory.max", "memory.current", "inactive_file"),
-                ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")):
-            most, used = _number(os.path.join(group, limit)), _number(os.path.join(group, usage))
-            kept = _number(os.path.join(group, "memory.stat"), cache)
-            if used < math.inf:         # what files occupy and nobody uses is given back
-                free.append(max(0, most - used + (kept if kept < used else 0)))
+    for group, limit, usage, cache in (
+            ("", "memory.max", "memory.current", "inactive_file"),
+            ("memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")):
+        folder = os.path.join(root, "sys/fs/cgroup", group)
+        most, used = (_number(os.path.join(folder, name)) for name in (limit, usage))
+        kept = _number(os.path.join(folder, "memory.stat"), cache)
+        if used < math.inf:             # files that nobody uses give their memory back
+            free.append(max(0, most - used + (kept if kept < used else 0)))
     return min(free) if min(free) < math.inf else 4 << 30
-
-
-def _control_groups(root):
-    """The folders of this process's control groups for memory, of version 1 or 2, and of those that
-    hold them."""
-    try:
-        with open(os.path.join(root, "proc/self/cgroup")) as file:
-            lines = [line.rstrip("\n").split(":", 2) for line in file]
-    except OSError:
-        return
-    for number, controllers, path in lines:
-        if number == "0" or "memory" in controllers.split(","):
-            mount = os.path.join(root, "sys/fs/cgroup", "memory" if controllers else "")
-            names = [name for name in path.split("/") if name]
-            for depth in range(len(names) + 1):
-                yield os.path.join(mount, *names[:depth])
 
 
 def _number(path, name=""):

@@ -68,7 +68,7 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str, N
     points : int
         Of a mesh of angles, at most.
     memory : int, optional
-        Bytes that refining the torus may take; by default three quarters of what is free.
+        Bytes that refining the torus may take; by default three quarters of the free memory.
     time_limit : float
         Seconds, after which no step of the work begins.
     progress : callable, optional
@@ -336,8 +336,8 @@ def _single(found, way, margin):
         more *= 1.05 + log(ratio * margin) / ((aim.rate - aim.rho) * aim.size)
     if ratio < 1:
         return torus
-    raise NotFound("the torus is seen, but with %d modes its error is %.2g times what the theorem "
-                   "admits" % (len(modes.at), ratio), 1.0, [float(p) for p in way.last])
+    raise NotFound("the torus is seen, but with %d modes its error is %.2g times the error that "
+                   "the theorem admits" % (len(modes.at), ratio), 1.0, [float(p) for p in way.last])
 
 
 # ---- a range

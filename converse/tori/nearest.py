@@ -270,7 +270,7 @@ def _triangles(target, within) -> Iterator[Triangle]:
 
 
 def _far_part(values, triangle, delta, corners) -> Tuple[np.ndarray, np.ndarray]:
-    """(vectors, about what large k contribute to c(delta) of each), in doubles; values: (weights,
+    """(vectors, about the share of large k in c(delta) of each), in doubles; values: (weights,
     conjugates, number)."""
     q, *p = (combined(column, values) for column in zip(*triangle))
     omega = np.array(p) / q                                     # (component, conjugate, number)
@@ -295,7 +295,7 @@ def _modes(n, reach) -> np.ndarray:
 
 
 def _near_part(omega, k, size, delta) -> np.ndarray:
-    """What k of these sizes contribute to c(delta), in doubles; one row for each omega and k."""
+    """The share of k of these sizes in c(delta), in doubles; one row for each omega and k."""
     n, x = k.shape[1], delta * size
     height = np.where(x <= n, np.exp(-x), (n / (np.e * np.maximum(x, 1e-9))) ** n)
     divisor = 2 * abs(np.sin(np.pi * (omega @ k.T)))

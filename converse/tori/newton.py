@@ -54,7 +54,7 @@ FRAMES: Tuple[Frame, ...] = tuple(
 
 def best_frame(k: np.ndarray, size: np.ndarray) -> Frame:
     """The frame along whose axes the modes k (2, n) that count fill the smallest rhombus.  Those
-    count that are larger than any mode at the edge of what is known."""
+    count that are larger than any mode at the edge of the known ones."""
     k = k[:, size > size[abs(k).max(0) == abs(k).max()].max()]
 
     def rhombus(frame):
@@ -182,7 +182,7 @@ class Mesh:
         return transform(values, axes=self.axes, norm="forward")
 
     def moved(self, coefficients: np.ndarray, other: "Mesh") -> np.ndarray:
-        """The same function on another grid of the same group: what that cannot hold is cut."""
+        """The same function on another grid of the same group, without the modes that the grid cannot hold."""
         there = self.inside & (abs(coefficients).max(0) > 0)
         if self.real:
             return other.spread(self.k[:, there], coefficients[:, there])

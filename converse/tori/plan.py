@@ -1,6 +1,6 @@
 """Estimates how many modes and digits the theorem of docs/proofs/existence.md will need of a torus
-that is known in doubles, and chooses the norm and the strip.  The checker decides what is
-needed."""
+that is known in doubles, and chooses the norm and the strip.  The checker alone
+decides."""
 
 from fractions import Fraction
 from functools import lru_cache
@@ -15,11 +15,11 @@ from .newton import Frame, Mesh, combined, inverted, sizes_holding, triangular, 
 from .rotation import Rotation
 from .torus import Strip
 
-MARGIN = 100.0              # Factor by which the error of a torus is to be below what is needed.
+MARGIN = 100.0              # Factor by which the error of a torus is to be below the one that is needed.
 WEIGHTS = 1, 2, 3, 4, 5, 6, 8, 10, 12, 16       # ratios of alpha
 TRIED = 3                   # So many are tried, those nearest to the ratio of the rates of decay.
 # E is computed for |k| up to EDGE times the longest mode that matters.  The torus takes up to ROOM
-# of these, so that most of what it leaves in E is seen.
+# of these, so that most modes that it leaves in E are seen.
 EDGE, ROOM = 1.13, 0.9
 SHARE = 0.3                 # s of the theorem
 BOX = {1: 1 << 16, 2: 700}  # Divisors are computed for modes with coordinates up to this.
@@ -108,7 +108,7 @@ def _length(frame, alpha, k):
 
 
 def _steps(mesh: Mesh, alpha: Weights) -> np.ndarray:
-    """What a step of each mode number of a mesh adds to |k|."""
+    """The length that a step of each mode number of a mesh adds to |k|."""
     return np.array(alpha if len(mesh.basis) == 2 else [
         _length(mesh.frame, alpha, np.array(mesh.basis[0]))], float)
 
@@ -193,7 +193,7 @@ class _Needed:
 
 
 def _loss(k: np.ndarray, divisor: np.ndarray, alpha: Weights, delta: float) -> float:
-    """About c(delta), from what _divisors gives.  The k that count most have about the length
+    """About c(delta), from the lists of _divisors.  The k that count most have about the length
     n/delta.  If the box does not hold all of these, they are taken to have the least
     |1 - e^{ik.w}| |k|^n of the longest k that it holds."""
     n = len(alpha)

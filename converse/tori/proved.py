@@ -23,7 +23,7 @@ from .nearest import Place, rotation_of
 from .rotation import Rotation
 from .torus import Torus, family, problem_of
 
-# If the residual exceeds what is needed by a factor below MOST_LACKING, the torus is found again,
+# If the residual exceeds the admissible one by a factor below MOST_LACKING, the torus is found again,
 # with a margin of FINER times this factor.
 MOST_LACKING, FINER = 1e8, 1e4
 
@@ -127,7 +127,7 @@ class ProvedTorus(Kept):
         return float(max(piece.distance for piece in self.pieces))
 
     def report(self) -> str:
-        """The theorem in words, and what it rests on."""
+        """The theorem in words, and its grounds."""
         return provided("ProvedTorus.report")(self)
 
     def plot(self, ax: Any = None) -> Any:
@@ -178,7 +178,7 @@ def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
     rotation : Rotation or str, optional
         The rotation vector; with a map, as `find` takes it.
     near, start, margin, points, memory : optional
-        With a map: what `find` takes.
+        With a map: the arguments of `find`.
     jobs : int
         How many pieces of a range are verified at a time, in processes.
     time_limit : float
@@ -201,7 +201,7 @@ def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
     TimeIsUp
         The time limit is over.
     ValueError
-        The arguments do not go together, or the checker refuses what the torus claims.
+        The arguments do not go together, or the checker refuses the claim of the torus.
 
     Notes
     -----

@@ -1,8 +1,8 @@
 """Refinement of a torus: Newton's method, its error computed with as many digits as the theorem
 asks for (converse/tori/precise.py).
 
-That is slow, so the error is computed once, or twice: what a correction changes in it is known to
-as many digits in doubles (Mesh.change).
+That is slow, so the error is computed once, or twice: the change by a correction is known to as
+many digits in doubles (Mesh.change).
 
 The coefficients may be polynomials in sigma, the variable of a range of amplitudes.  They are then
 corrected at points of the circle |sigma| = 1, from where Cauchy's formula, a Fourier transform,
@@ -121,7 +121,7 @@ def accepted(margin: float) -> float:
 
 def refined(torus: Torus, modes: Modes, plan: Plan, margin: float,
             last: bool = True) -> Tuple[Torus, float]:
-    """The torus after as many corrections as help, and about ||E||_rho over what the theorem needs.
+    """The torus after as many corrections as help, and about ||E||_rho over the norm that the theorem needs.
 
     last -- if not, a torus that needs more modes is not corrected further"""
     mesh, before = modes.mesh, inf

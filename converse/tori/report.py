@@ -1,4 +1,4 @@
-"""The report of converse-tori: the theorem in the parameters of the input, and what it rests on.
+"""The report of converse-tori: the theorem in the parameters of the input, and its grounds.
 Bounds are rounded to the safe side."""
 
 import math
@@ -106,7 +106,7 @@ def _omega(rotation: Rotation) -> str:
 
 def _grounds(proof: ProvedTorus, worst: Piece,
              certificate: Optional[str]) -> Iterator[Tuple[str, str]]:
-    """(label, text) of what the theorem rests on."""
+    """(label, text) of the grounds of the theorem."""
     yield "Verify", verify_text(certificate, "certificate")
     yield from _rotation_lines(proof.rotation)
     yield "Distance", "|u - u0| <= %s, u0 the Fourier series of the certificate" % _up(

@@ -15,6 +15,7 @@ from math import floor, lcm
 from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 from ..check.field import is_irreducible, roots_between
+from ..check.words import sum_text
 from ..model.exact import Ends, exact
 from .field import Element, Field, Polynomial, determinant, primitive, real_roots
 
@@ -325,14 +326,8 @@ def _element(text, field):
 
 def polynomial_text(polynomial: Sequence[Union[int, Fraction]], ascending: bool = False) -> str:
     """Such as t^2+t-1."""
-    text = ""
-    terms = list(enumerate(polynomial))
-    for j, c in terms if ascending else reversed(terms):
-        if c:
-            power = "" if j == 0 else "t" if j == 1 else "t^%d" % j
-            size = "" if abs(c) == 1 and power else str(abs(c))
-            text += ("-" if c < 0 else "+") + size + power
-    return text[1:] if text.startswith("+") else text or "0"
+    terms = [(c, ("", "t")[j] if j < 2 else "t^%d" % j) for j, c in enumerate(polynomial)]
+    return sum_text(*zip(*(terms if ascending else reversed(terms)))).replace(" ", "")
 
 
 def element_text(element: Element) -> str:

@@ -42,8 +42,8 @@ ENTRIES = 10 ** 6           # A matrix of modes and angles has at most about the
 
 
 def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
-    """The potential in the middle of the patch of a map, and what the parameter s adds to each
-    amplitude at s = 1, None without a parameter.  Waves that are 0 in the whole patch are left out.
+    """The potential in the middle of the patch of a map, and the change of each amplitude by
+    the parameter s = 1, None without a parameter.  Waves that are 0 in the whole patch are left out.
 
     Its dimension is 1 if all these waves have k1 = 0, else 2.
     TypeError: it is not a map, nor the problem of one.  ValueError: there is more than one
@@ -97,7 +97,7 @@ class Torus:
     potential
         The potential, of n angles, with the amplitudes at s = 0.
     part
-        What the parameter s adds to each amplitude at s = 1; None: there is no parameter.
+        The change of each amplitude by the parameter s = 1; None: there is no parameter.
     rotation
         The rotation vector omega, in turns.
     bits
