@@ -214,12 +214,8 @@ def _on_a_line(orbits):
 
 def _farey(order):
     """The fractions (p, q) from 0 to 1/2 with q up to an order."""
-    found, after = [(0, 1)], (1, order)
-    while 2 * found[-1][0] < found[-1][1]:
-        (p, q), (r, s) = found[-1], after
-        m = (order + q) // s
-        found, after = [*found, after], (m * r - p, m * s - q)
-    return found
+    found = sorted({Fraction(p, q) for q in range(1, order + 1) for p in range(q // 2 + 1)})
+    return [(each.numerator, each.denominator) for each in found]
 
 
 def _located(orbits, omega, points, judged):

@@ -5,6 +5,7 @@ import math
 from fractions import Fraction
 from typing import Iterator, Optional, Sequence, Tuple, Union
 
+from ..check.words import sum_text
 from ..model.exact import decimal_text, rounded_text, short_text
 from ..model.map import from_patch
 from ..model.problem import Problem
@@ -140,13 +141,8 @@ def _piece_line(piece: Piece) -> str:
 def _divisors(piece: Piece, strip: Strip) -> Iterator[Tuple[str, str]]:
     """The checker's gamma is for the weights alpha as integers, by their common denominator."""
     n, scale = len(strip.alpha), math.lcm(*(a.denominator for a in strip.alpha))
-    terms = []
-    for row, a in zip(strip.frame, strip.alpha):
-        angle = " ".join("%s %s" % ("-" if x < 0 else "+", name if abs(x) == 1 else
-                                    "%d %s" % (abs(x), name))
-                         for x, name in zip(row, _names("k", n)) if x)
-        terms.append("%s|%s|" % ("" if a == 1 else "%s " % a,
-                                 angle[2:] if angle[0] == "+" else "-" + angle[2:]))
+    terms = ["%s|%s|" % ("" if a == 1 else "%s " % a, sum_text(row, _names("k", n)))
+             for row, a in zip(strip.frame, strip.alpha)]
     yield "Divisors", "|1 - exp(2 pi i k.omega)| >= %s/%s for k != 0" % (
         _down(piece.gamma / scale ** n, 6), "|k|" if n == 1 else "|k|^2")
     if n == 2 or strip.alpha != (1,):

@@ -170,17 +170,16 @@ def _minimal(coefficients: Sequence[Union[int, Fraction]]) -> Polynomial:
 
 # ---- names
 
-NAMES: Dict[str, Tuple[str, str]] = {   # of what, and what it is
-    "golden": ("t^2+t-1: t", "(sqrt 5 - 1)/2"),
-    "silver": ("t^2+2t-1: t", "sqrt 2 - 1"),
-    "spiral": ("t^3-t-1: t-1, t^2-1", "the spiral mean of Kim and Ostlund"),
-    "seven": ("t^3+t^2-2t-1: t-1, t^2-1", "of t = 2 cos(2 pi/7)"),
-    "T49": ("t^3+t^2-2t-1: (-23+8t+11t^2)/13, (25-7t-8t^2)/13",
-            "near (0.3139, 0.2947), of the field of discriminant 49"),
-    "V1": ("t^3+t^2-2t-1: (65069+4428t+8047t^2)/277999, (82757-371t-737t^2)/277999",
-           "near (0.29893, 0.29190), of the same field"),
-    "V2": ("t^3+t^2-2t-1: (341+187t+338t^2)/3683, (23180-2258t-4101t^2)/47879",
-           "near (0.29860, 0.29214), of the same field"),
+NAMES: Dict[str, str] = {
+    "golden": "t^2+t-1: t",             # (sqrt 5 - 1)/2
+    "silver": "t^2+2t-1: t",            # sqrt 2 - 1
+    "spiral": "t^3-t-1: t-1, t^2-1",    # the spiral mean of Kim and Ostlund
+    # t = 2 cos(2 pi/7); T49 is near (0.3139, 0.2947), V1 near (0.29893, 0.29190), V2 near
+    # (0.29860, 0.29214).
+    "seven": "t^3+t^2-2t-1: t-1, t^2-1",
+    "T49": "t^3+t^2-2t-1: (-23+8t+11t^2)/13, (25-7t-8t^2)/13",
+    "V1": "t^3+t^2-2t-1: (65069+4428t+8047t^2)/277999, (82757-371t-737t^2)/277999",
+    "V2": "t^3+t^2-2t-1: (341+187t+338t^2)/3683, (23180-2258t-4101t^2)/47879",
 }
 
 
@@ -221,7 +220,7 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
     if len(text) > LONGEST:
         raise ValueError("the rotation vector has %d characters; %d at most" % (len(text), LONGEST))
     key = {name.lower(): name for name in NAMES}.get(text.strip().lower())
-    rotation = _read(NAMES[key][0], key) if key else _read(text, "")
+    rotation = _read(NAMES[key], key) if key else _read(text, "")
     if dimension not in (None, rotation.dimension):
         raise ValueError("%s has %s, but the map has %s" % (
             rotation, ("one component", "two components")[rotation.dimension - 1],
@@ -232,7 +231,7 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
 
 def name_of(rotation: Rotation) -> str:
     """The name that read_rotation() reads as this rotation vector, "" if there is none."""
-    return next((name for name, (text, _) in NAMES.items() if text.partition(":")[0] ==
+    return next((name for name, text in NAMES.items() if text.partition(":")[0] ==
                  polynomial_text(rotation.polynomial) and read_rotation(name).text() ==
                  rotation.text()), "")
 

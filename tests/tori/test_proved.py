@@ -159,7 +159,7 @@ def test_what_is_not_a_torus_is_refused(circle, pieces):
         prove([circle, circle])
     with pytest.raises(ValueError, match="no torus"):
         prove([])
-    with pytest.raises(ValueError, match="in what strip"):
+    with pytest.raises(ValueError, match="no strip"):
         prove(changed(circle, strip=None))
     with pytest.raises(ValueError, match="another rotation vector"):
         prove(circle, read_rotation("silver"))
