@@ -20,9 +20,7 @@ FINEST = 1 << 14                        # A cell with a torus is left out if so 
 ROUND, LEAST = 8, Fraction(1, 16)       # cells of a round, none of which is much less urgent
 FIRST_POINTS = {1: 1 << 15, 2: 1 << 18}     # of the first try at a cell, by the number of angles
 DOUBT = Fraction(1, 2)                  # of its weight, where the middle of a cell is not excluded
-# A cell that meets a run of values with tori is so much less urgent; a neighbour of excluded values
-# is so much more urgent, by the number of angles.
-TORUS, EDGE = 64, {1: 32, 2: 256}
+EDGE = {1: 32, 2: 256}                  # A neighbour of excluded values is so much more urgent.
 Hint = Tuple[Fraction, Tuple[none.Point, ...]]  # a value, and the x* over which it is excluded
 NEAREST = 8                             # x* of neighbours that are suggested for a cell
 
@@ -136,14 +134,14 @@ class _Line:
 
     def round(self, points: float) -> List[Any]:
         """The tasks that are done next.  Tries at tori take at most half of the points of the
-        search."""
+        search, and cells that meet runs of tori come last."""
         def tori():
             left = min(points / 2 - self.spent[1], points - self.diagram.points)
             return self.tori.round(left / POINTS_A_SECOND)
 
         first, second = (tori, self._cells) if self.spent[1] < self.spent[0] else (
             self._cells, tori)
-        return first() or second()
+        return first() or second() or self._cells(True)
 
     def call(self, task, most: int) -> Tuple[Any, ...]:
         """The function that does a task within so many points, and its arguments."""
@@ -175,18 +173,17 @@ class _Line:
                     self._divided(task)
         return member
 
-    def _cells(self):
+    def _cells(self, all_of_them=False):
         """The cells that are tried next, the widest first, from the top down; one that touches a
-        part without tori counts as if it were wider, one that meets a run as narrower.  First those
-        with a proved torus are halved, until their parts have none."""
+        part without tori counts as if it were wider; those that meet a run only if all are wanted.
+        First those with a proved torus are halved, until their parts have none."""
         ends = {end for each in self.diagram.none for end in each}
         edge = EDGE[self.diagram.family.dimension]
         runs = self.tori.hulls()
 
         def rank(cell):
             urgency = cell.weight * (edge if cell.low in ends or cell.high in ends else 1)
-            torus = any(low <= cell.high and cell.low <= high for low, high in runs)
-            return (cell.low - cell.high) * urgency / (TORUS if torus else 1), -cell.low
+            return (cell.low - cell.high) * urgency, -cell.low
 
         tori = [(each.low, each.high) for each in self.diagram.tori]
         todo, free = list(self.cells), []       # type: List[Cell], List[Cell]
@@ -197,10 +194,11 @@ class _Line:
             elif cell.high - cell.low > self.grain and not any(
                     low <= cell.low and cell.high <= high for low, high in inside):
                 todo += cell.halves(False)
-        free.sort(key=rank)
-        count = sum(rank(cell)[0] <= LEAST * rank(free[0])[0] for cell in free[:ROUND])
-        self.cells = free[count:]
-        return free[:count]
+        wanted = sorted((cell for cell in free if all_of_them or not any(
+            low <= cell.high and cell.low <= high for low, high in runs)), key=rank)
+        wanted = [cell for cell in wanted[:ROUND] if rank(cell)[0] <= LEAST * rank(wanted[0])[0]]
+        self.cells = [cell for cell in free if cell not in wanted]
+        return wanted
 
     def _divided(self, cell):
         """The parts of the whole range, with ends of few decimals."""

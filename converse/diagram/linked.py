@@ -29,7 +29,8 @@ Point = Tuple[str, ...]                 # x*, as the prover takes it
 
 DEPTH = 60                              # cuts of a proof
 LOOK_CUTS = {1: 16, 2: 24}              # of the tree over the first x*
-RINGS = [Fraction(step, 1000) for step in (16, 32, 64, 128, 256, 8, 4)]    # radians, between x*
+RINGS, FINE_RINGS = ([Fraction(step, 1000) for step in steps] for steps in (
+    (16, 32, 64, 128, 256, 8, 4), (*range(8, 136, 8), 256)))    # radians, between x*; of one angle
 ENOUGH = 1000                           # points: an x* that excludes a cluster so cheaply is good
 LEVEL_FACTOR = 8                        # x* are tried with so many times more points each time,
 FAR_FACTOR = {1: 4, 2: 8}               # those that are not suggested with so many times fewer.
@@ -169,7 +170,8 @@ class _Linking:
                     for way in ways(self.problem)]
 
         points, most = ENOUGH, self.points * len(self.ends)
-        others = [xstar for step in RINGS for xstar in around(step)]
+        others = [xstar for step in (FINE_RINGS if self.problem.is_flat else RINGS)
+                  for xstar in around(step)]
         while not best and points < most:
             points = min(LEVEL_FACTOR * points, most)
             look([*xstars, *(others if self.far * points <= most else [])], points)

@@ -1,6 +1,6 @@
 """The report of a diagram: its theorem in the parameters of the family, and what is open."""
 
-from ..check import box_words, exact_text
+from ..check import box_words, exact_text, union
 from ..model.exact import decimal_text, rounded, rounded_text
 from ..model.problem import Problem
 from ..model.statement import TORUS, ended, indented, labelled, map_lines, whole
@@ -16,9 +16,12 @@ def report(diagram, file=None):
     two, names, lines = diagram.family.dimension == 2, diagram.names, []
     torus = TORUS[diagram.family.dimension]
     values = _listed(names, diagram.boxes)
-    tori = [(whole(box_words(names, member.box)), member.rotation)
-            for member in sorted(diagram.members, key=lambda member: member.box)
-            if member.rotation is not None]
+    boxes = {}                          # with tori, by the rotation vector
+    for member in sorted(diagram.members, key=lambda member: member.box):
+        if member.rotation is not None:
+            boxes.setdefault(member.rotation, []).append(member.box)
+    tori = [("; ".join(_words(names, each)), rotation) for rotation, each in boxes.items()]
+    everywhere = _words(names, [box for each in boxes.values() for box in each])
     larger = _listed(names, [member.box for member in diagram.members if member.larger])
     if values:
         lines += ["has no %s J = P + S'(y)%s, P constant, S periodic and C1, for %s" % (
@@ -27,7 +30,7 @@ def report(diagram, file=None):
         lines += ["and for every multiple s >= 1 of " + "; ".join(larger)]
     if tori:
         lines += ["%shas a%s %s, real analytic and conjugate to a rotation, for %s" % (
-            "and " * bool(values), "n" * two, torus, "; ".join(words for words, _ in tori))]
+            "and " * bool(values), "n" * two, torus, "; ".join(everywhere))]
     pins = box_words(diagram.family.names[len(names):], diagram.family.ranges[len(names):])
     first = headline("THEOREM", diagram.restored, "proof") if lines else \
         "UNDECIDED: nothing is proved."
@@ -43,6 +46,13 @@ def _listed(names, boxes):
     if len(boxes) > MOST_BOXES:
         return ["every (%s) in %d boxes, which the attributes `none` and `members` of the diagram, "
                 "and converse-check, list" % (", ".join(names), len(boxes))]
+    return _words(names, boxes)
+
+
+def _words(names, boxes):
+    """The values of the boxes in words; with one parameter those of their union."""
+    if len(names) == 1:
+        boxes = [(ends,) for ends in union([ends for ends, in boxes])]
     return [whole(box_words(names, box)) for box in boxes]
 
 
@@ -73,9 +83,10 @@ def _grounds(diagram, tori, file):
         yield "Seen", "%s: an orbit as of a torus, rotation %s" % (
             box_words(diagram.names, [(x, x) for x in each.value]),
             ", ".join("%.9g" % x for x in each.rotation))
+    tori = sum(member.rotation is not None for member in diagram.members)
     sides = ", and %d by one point of the torus each" % len(diagram.sides)
     yield "Proofs", "%d of no torus%s, %d of tori; %s points of orbits, %.0f s" % (
-        len(diagram.members) - len(tori), sides * bool(diagram.sides), len(tori),
+        len(diagram.members) - tori, sides * bool(diagram.sides), tori,
         format(diagram.points, ","), diagram.seconds)
     if diagram.sha256:
         yield "SHA-256", diagram.sha256

@@ -3,19 +3,22 @@
 Existence is not monotone in a parameter: tori break up, and come back.  So values of a grid are
 looked at, then values between those where a regular orbit is seen and those where none is.  Values
 that are seen next to each other make a run.  In each run a torus is proved, and then others nearer
-to both ends of the run.  What is seen is floating point; the checker verifies each certificate.
+to both ends of the run; and with one angle tori for every value between proved ones.  What is seen
+is floating point; the checker verifies each certificate.
 """
 
 import itertools
 import math
 from fractions import Fraction
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
 
+from .. import check
 from ..model.exact import Ends
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..storage.files import ConverseError
 from ..tori import prove
+from ..tori.certificate import tori_of
 from ..tori.continuation import POINTS
 from ..tori.effort import LOOKING, Work
 from ..tori.find import Search
@@ -27,7 +30,7 @@ from .value import POINTS_A_SECOND, Diagram, Seen
 # By the number of angles.  First GRID parts of the range are looked at; then gaps between values,
 # down to 1/PARTS of what is open, between tori SPARSE times less.  Where a torus is seen at one end
 # only, they are looked at down to 1/FINEST, and to SHARE of the way to a proved torus.
-GRID, PARTS, FINEST = {1: 16, 2: 8}, {1: 1 << 8, 2: 1 << 5}, {1: 1 << 15, 2: 1 << 9}
+GRID, PARTS, FINEST = {1: 8, 2: 8}, {1: 1 << 8, 2: 1 << 5}, {1: 1 << 15, 2: 1 << 9}
 SPARSE, SHARE = 8, Fraction(1, 8)
 SEEN = 3e-8                             # turns: an orbit that changes less is taken for a torus
 EFFORTS = {1: (5, 20, 80), 2: (128, 512)}       # seconds that a try may take, about
@@ -36,17 +39,22 @@ POINT = 1e-4                            # seconds of a proof for each point of i
 BORDERS, LOOKS, PROOFS = 2, 2, 1        # of a round
 
 
+RANGES = Fraction(1), Fraction(1, 2), Fraction(1, 4)    # parts between proved tori, that are tried
+
+
 class _Stopped(Exception):
     """A task ends before its time."""
 
 
 class Task(NamedTuple):
     """A value to look at; with effort > 0 one to prove a torus at, or between `back` and it, within
-    so many seconds of work."""
+    so many seconds of work; with a certificate of a torus to begin from, `start`, tori are to be
+    proved for every value between."""
 
     value: Fraction
     effort: float = 0
     back: Optional[Fraction] = None
+    start: str = ""
 
     @property
     def ends(self) -> Ends:
@@ -84,8 +92,12 @@ def attempt(family: SymplecticMap, task: Task, stop: Callable[[], bool] = bool
     rotation = torus = None
     work = Work(step, most=task.effort or math.inf)
     try:
-        if task.effort:
-            search = Search(Problem.of(family), min(POINTS, int(task.effort / POINT)), None, work)
+        search = Search(Problem.of(family), min(POINTS, int(task.effort / POINT)), None, work)
+        if task.start:
+            start, = tori_of(check.content(task.start.encode()))
+            torus = prove(family, start.rotation, points=search.points, progress=work, **(
+                {"start": start} if search.amplitude(-1).any() else {}))
+        elif task.effort:
             torus = prove(search.farthest(1 if task.value == task.ends[1] else -1), progress=work)
         else:
             work("looking for regular orbits", LOOKING[family.dimension])
@@ -102,18 +114,22 @@ class Runs:
     """The state of the search for tori along a line.
 
     looks -- of each value that was looked at the rotation vector that is seen, or None.
-    tried -- of each value with a try the largest effort."""
+    tried -- of each value with a try the largest effort.
+    ranges -- (low, high) with a try to prove tori for every value."""
 
     def __init__(self, diagram: Diagram, lines: Sequence[Sequence[str]]) -> None:
         self.diagram = diagram
         self.n = diagram.family.dimension
         self.looks: Dict[Fraction, Optional[Tuple[float, ...]]] = {}
         self.tried: Dict[Fraction, float] = {}
+        self.ranges: Set[Ends] = set()
         for kind, value, *words in lines:
             if kind == "look":
                 self.looks[Fraction(value)] = tuple(map(float, words)) or None
             elif kind == "effort":
                 self.tried[Fraction(value)] = float(words[0])
+            elif kind == "range":
+                self.ranges.add((Fraction(value), Fraction(words[0])))
         low, high = diagram.ranges[0]
         self.low, self.high = low, min(high, max((end for _, end in diagram.open), default=high))
         self.grain = (high - low) / FINEST[self.n]
@@ -122,7 +138,8 @@ class Runs:
         """The state, for the file."""
         return [" ".join(["look", str(value), *map(repr, seen or ())])
                 for value, seen in sorted(self.looks.items())] + [
-            "effort %s %r" % item for item in sorted(self.tried.items())]
+            "effort %s %r" % item for item in sorted(self.tried.items())] + [
+            "range %s %s" % ends for ends in sorted(self.ranges)]
 
     def round(self, seconds: float = math.inf) -> List[Task]:
         """What is done next: looks at a grid, and as soon as a torus is seen a try to prove one;
@@ -139,7 +156,9 @@ class Runs:
         """Records what became of a task; None: it was not done."""
         if outcome is None:
             return
-        if task.effort:
+        if task.start:
+            self.ranges.add(task.ends)
+        elif task.effort:
             self.tried[task.value] = task.effort
         else:
             self.looks[task.value] = outcome.rotation
@@ -161,8 +180,8 @@ class Runs:
                 (a + b) / 2, self.grain)
             least = SPARSE * part if seen else part
             if len(seen) == 1:
-                least = max(self.grain, SHARE * min(
-                    (abs(value - seen[0]) for value in self._proved()), default=self.high - self.low))
+                near = [abs(value - seen[0]) for value in self._proved()]
+                least = max(self.grain, SHARE * min(near, default=self.high - self.low))
             if b - a > least and not self._is_known(middle):
                 gaps[len(seen) == 1].append(((a - b) / least, middle))
         return [Task(middle) for each, most in zip(gaps, (LOOKS, BORDERS))
@@ -174,16 +193,32 @@ class Runs:
                                       if self.low <= end <= self.high)})
 
     def _is_known(self, value):
-        """Has it been looked at, is it excluded, or is V 0 there, so that every torus exists?"""
-        return value in self.looks or any(
-            low <= value <= high for low, high in self.diagram.none) or not any(
+        """Has it been looked at, is it excluded or proved to have a torus, or is V 0 there, so that
+        every torus exists?"""
+        return value in self.looks or any(low <= value <= high for low, high, *_ in [
+            *self.diagram.none, *self.diagram.tori]) or not any(
             wave.middle + value * wave.parts[0] for wave in self.diagram.waves)
 
     def _proofs(self, seconds=math.inf):
         """The tries that are next: where the part of a run that is not proved is widest for the
         effort."""
-        tries = sorted(each for run in self.runs() for each in self._of_run(run, seconds))
+        tries = sorted([*self._of_ranges(seconds), *(
+            each for run in self.runs() for each in self._of_run(run, seconds))])
         return [task for _, task in tries[:PROOFS]]
+
+    def _of_ranges(self, seconds):
+        """Tries to prove tori for every value from one to the next proved one of its run, or else
+        for parts at the lower end, each tried once."""
+        effort, tori = min(EFFORTS[self.n][0], seconds), self.diagram.tori
+        single = {each.low: each.certificate for each in tori if each.low == each.high}
+        begun, found = {each.low for each in tori if each.low < each.high}, []
+        for first, last in self.hulls() if self.n == 1 and effort >= LEAST[1] else []:
+            ends = sorted({first, *(x for x in single if first <= x <= last)})
+            for low, high in zip(ends, ends[1:]):
+                parts = [low + share * (high - low) for share in RANGES if low not in begun]
+                found += [(-float(end - low) / effort, Task(end, effort, low, single[high]))
+                          for end in parts if (low, end) not in self.ranges][:1]
+        return found
 
     def _proved(self):
         return [value for each in self.diagram.tori for value in {each.low, each.high}]

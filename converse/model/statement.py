@@ -57,7 +57,7 @@ def indented(lines):
 
 def ended(lines):
     """The lines with a full stop, unless they end with dots."""
-    return [*lines[:-1], lines[-1] + "." * (not lines[-1].endswith("..."))]
+    return [*lines[:-1], lines[-1].rstrip(",") + "." * (not lines[-1].endswith("..."))]
 
 
 def potential_text(problem):

@@ -137,12 +137,43 @@ def test_a_run_is_proved_up_to_the_last_value_that_can_be(monkeypatch, last):
     monkeypatch.setattr(some.Runs, "_proved", lambda self: proved)
     runs = runs_of({"0": .2, "0.2": .2, "0.4": .2, "0.8": .2, "0.81": .2, "0.9": None})
     for _ in range(100):
-        for value, effort, back in runs._proofs():
+        for value, effort, back, _ in runs._proofs():
             assert back == max(proved)
             runs.tried[value] = effort
             if value <= last * effort / some.EFFORTS[1][-1]:
                 proved.append(value)
     assert 0 <= last - max(proved) <= 3 * runs.grain and not runs._proofs()
+
+
+def test_tori_are_tried_for_every_value_between_proved_ones(monkeypatch):
+    """Then for the lower half, or the lowest quarter."""
+    runs = runs_of({"0": .2, "0.2": .2, "0.6": .2, "0.61": None})
+    tori_of = [Existence(F(value), F(value), None, name) for value, name in (
+        ("0.2", "low"), ("0.6", "high"))]
+    monkeypatch.setattr(Diagram, "tori", tori_of)
+    low, high = ("low", "0", "0.2"), ("high", "0.2", "0.6")
+    for ends in ("0.2", "0.6"), ("0.1", "0.4"), ("0.05", "0.3"), ():
+        asked = [task for _, task in runs._of_ranges(7)]
+        assert asked == [some.Task(F(end), 5, F(back), start) for end, (start, back, _) in zip(
+            ends, (low, high))]
+        for task in asked:
+            runs.take(task, some.Outcome(1, None, None))
+    again = some.Runs(runs.diagram, [line.split() for line in runs.lines()])
+    assert again.ranges == runs.ranges and not again.tried and not again._of_ranges(7)
+    again.ranges.clear()
+    tori_of.append(Existence(F("0.2"), F("0.4"), None, "every"))
+    assert [task.start for _, task in again._of_ranges(7)] == ["low"] and not runs._of_ranges(1)
+    assert again._is_known(F("0.3")) and not again._is_known(F("0.5"))
+
+
+@pytest.mark.parametrize("low", [0, "0.1"])
+def test_tori_of_a_range_are_proved_from_the_torus_at_its_end(low):
+    """Where V is 0 there is no way from a torus, but one to it."""
+    found = Diagram.of(FourierMap({1: {"K": 1}}, K=(0, 2)))
+    start = tori.prove(found.over(((F("0.3"), F("0.3")),)), "golden")._text()
+    task = some.Task(F("0.2"), 5, F(low), start)
+    member = found.add(some.attempt(found.over((task.ends,)), task).torus)
+    assert member.box == ((F(low), F("0.2")),) and found.verify()
 
 
 @pytest.mark.slow
@@ -284,13 +315,14 @@ def test_a_cell_next_to_excluded_values_comes_first(monkeypatch):
     assert [cell.low for cell in work._cells()] == [F("0.4"), F("0.3"), F("0.501")]
 
 
-def test_a_cell_between_values_with_tori_comes_later():
+def test_a_cell_between_values_with_tori_comes_last():
     """Even below the first value with a torus, from where V is 0 on."""
     work = line._Line(Diagram.of(FourierMap({1: {"k": 1}}, k=(0, 2))))
     work.cells = [line.Cell(F(low), F(high), 1, F(1)) for low, high in (
         ("0", "0.1"), ("0.3", "0.4"), ("1.31", "1.32"))]
     work.tori.looks.update({F("0.125"): (.2,), F("1.25"): (.2,), F("1.3"): None})
-    assert [cell.low for cell in work._cells()] == [F("1.31"), F("0.3"), F(0)]
+    assert [cell.low for cell in work._cells()] == [F("1.31")] and not work._cells()
+    assert [cell.low for cell in work._cells(True)] == [F("0.3"), F(0)] and work.cells == []
 
 
 def test_a_cell_with_a_torus_is_halved_and_not_tried(monkeypatch):

@@ -57,8 +57,19 @@ def test_the_report_states_the_theorem(made):
     assert "omega = 0.618033988749... = [0; 1, 1, ...] (golden)" in text
     assert "Open       0 <= k < 0.1; 0.2 < k < 0.9; 0.9 < k < 1.05; 1.2 < k < 1.3\n" in text
     assert "Seen       k = 0.93: an orbit as of a torus" in text
+    assert "Rotation   every k in [0.1, 0.2]; k = 0.9: omega = 0.618" in text
     nothing = Diagram.of(StandardMap((0, 2))).report()
-    assert nothing.startswith("UNDECIDED") and "Open       0 <= k <= 2\n" in nothing
+    assert nothing.startswith("UNDECIDED") and "J' = J + k sin y.\n" in nothing
+    assert "Open       0 <= k <= 2\n" in nothing
+
+
+def test_tori_of_one_rotation_number_are_united_in_the_report():
+    found = Diagram.of(StandardMap((0, 2)))
+    for low, high in (("0.1", "0.2"), ("0.15", "0.15"), ("0.2", "0.3"), ("0.4", "0.4")):
+        found.add(tori.prove(found.over(((F(low), F(high)),)), "golden"))
+    text = found.report()
+    assert "for every k in [0.1, 0.3]; k = 0.4." in " ".join(text.split())
+    assert text.count("Rotation ") == 1 and "4 of tori" in text
 
 
 def test_plain_data(made):
