@@ -16,7 +16,8 @@ import signal
 import sys
 import threading
 
-from .signals import SIGNALS
+from .failures import Unusable
+from .signals import SIGNALS, undisturbed
 
 LOOK_SECONDS = 0.1                      # between two looks for a signal
 AHEAD = 4                               # results of each process that wait for an earlier one
@@ -148,3 +149,19 @@ def in_order(call, items, jobs, undisturbed):
                 worker.kill()
             for worker in workers:
                 worker.join()
+
+
+def mapped(call, items, jobs):
+    """Yields call(item) of all items in their order, in processes if there are several jobs.
+
+    Unusable: a process died.
+    """
+    if jobs == 1:
+        yield from map(call, items)
+        return
+    try:
+        with contextlib.closing(in_order(call, items, jobs, undisturbed)) as results:
+            yield from results
+    except ProcessDied:
+        raise Unusable("a worker process died, perhaps for lack of memory; nothing was "
+                       "verified") from None

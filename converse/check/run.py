@@ -19,13 +19,14 @@ from .limits import MAX_BYTES, PART, SPOT_CHECK, VERIFIED
 from .links import check_links
 from .lockstep import make_lockstep
 from .portrait import PORTRAIT, Portrait, portrayed
+from .processes import mapped
 from .progress import Bar, reason
 from .proof_file import PROOF
 from .torus_file import TORUS, TorusClaim
 from .tree import check_mirror_images, check_tree, leaf_text
 from .version import __version__
 from .words import claimed, decimal_text, frame_text, range_text, successors
-from .workers import Problems, check_all
+from .workers import Problems
 
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
 FAST_CHUNK = 1 << 10, 1 << 14           # least (a batch of Lockstep) and most of the fast path
@@ -246,7 +247,7 @@ def check_leaves(problems, chosen, jobs, bar):
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
     confirmed = [0, 0, 0]
     with Bar(bar, len(chosen)) as progress, \
-            contextlib.closing(check_all(chunks, jobs, problems)) as results:
+            contextlib.closing(mapped(problems.check_chunk, chunks, jobs)) as results:
         for n, pieces, fast, failure in results:
             confirmed = [a + b for a, b in zip(confirmed, (n, pieces, n * fast))]
             progress.advance(n)

@@ -15,13 +15,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from .arith import GUARD, dot, fixed_of
-from .failures import NotConfirmed, Rejected, Unusable, named
+from .failures import NotConfirmed, Rejected, named
 from .field import (E_LOW, Divisors, Field, Norm, combination, exponential_above, rounded_down,
                     rounded_up, upper_root)
 from .limits import MAX_BITS
-from .processes import ProcessDied, in_order
+from .processes import mapped
 from .series import FINE, Box, Ring, conjugate, greatest, opposite, powers_of, turn
-from .signals import undisturbed
 from .version import __version__
 from .words import decimal_text, exact_text, map_lines, sum_text
 
@@ -768,20 +767,14 @@ def verify_torus(claim, tell=lambda text: None, jobs=1):
     Rejected, NotConfirmed, Unusable
         The theorem is not verified; the text says why.
     """
-    setting, numbers = Setting(claim), range(len(claim.pieces))
-    if min(jobs, len(numbers)) == 1:
-        found = [verify_piece(setting, tell, number) for number in numbers]
-        return existence_report(claim, setting, found), tuple(found)
-    found = []
-    try:
-        with contextlib.closing(in_order(functools.partial(verify_piece, setting, nobody), numbers,
-                                         min(jobs, len(numbers)), undisturbed)) as results:
-            for each in results:
-                found.append(each)
-                tell("%d of %d pieces are verified" % (len(found), len(numbers)))
-    except ProcessDied:
-        raise Unusable("a process that verified a piece died, perhaps for lack of memory; nothing "
-                       "was verified") from None
+    setting, count, found = Setting(claim), len(claim.pieces), []
+    jobs = min(jobs, count)
+    call = functools.partial(verify_piece, setting, tell if jobs == 1 else nobody)
+    with contextlib.closing(mapped(call, range(count), jobs)) as results:
+        for each in results:
+            found.append(each)
+            if jobs > 1:
+                tell("%d of %d pieces are verified" % (len(found), count))
     return existence_report(claim, setting, found), tuple(found)
 
 

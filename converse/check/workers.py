@@ -1,16 +1,13 @@
 """The leaves of all claims, divided among processes."""
 
-import contextlib
 import math
 
 from .arith import dot
 from .claim import LETTERS
 from .criterion import Criterion
-from .failures import Unusable, named
+from .failures import named
 from .limits import MAX_SITES
 from .lockstep import import_numpy_if_sound, least_in_double
-from .processes import ProcessDied, in_order
-from .signals import undisturbed
 from .tree import leaves
 
 
@@ -90,17 +87,3 @@ class Problems:
                 pieces.append(tried)
         n = refused[0] if refused else len(cells)
         return n, sum(pieces[:n]), fast, refused and (*chunk[n], refused[1])
-
-
-def check_all(chunks, jobs, problems):
-    """Yields what check_chunk finds in the chunks, in their order."""
-    if jobs == 1:
-        yield from map(problems.check_chunk, chunks)
-        return
-    try:
-        with contextlib.closing(in_order(problems.check_chunk, chunks, jobs,
-                                         undisturbed)) as results:
-            yield from results
-    except ProcessDied:
-        raise Unusable("a worker process died, perhaps for lack of memory; nothing was "
-                       "verified") from None

@@ -872,13 +872,13 @@ def test_long_orbits_are_followed_fewer_at_a_time(np, root, tmp_path, monkeypatc
 def test_processes_share_the_memory_of_two(np, root, tmp_path, monkeypatch):
     prove(read_input(root / "inputs" / "standard-63-64.in"), method="loewner").save(tmp_path / "a")
     monkeypatch.setattr(check, "FAST_CHUNK", (50, check.FAST_CHUNK[1]))     # 135 leaves
-    check_all, seen = check.check_all, []
+    seen = []
 
-    def record(chunks, jobs, problems):
-        seen.append((jobs, problems.fast.memory))
-        return check_all(chunks, 1, problems)
+    def record(call, chunks, jobs):
+        seen.append((jobs, call.__self__.fast.memory))
+        yield from map(call, chunks)
 
-    monkeypatch.setattr(check, "check_all", record)
+    monkeypatch.setattr(check, "mapped", record)
     for jobs in (1, 2, 9):
         assert check.verify(tmp_path / "a", jobs=jobs)
     assert seen == [(1, check.MEMORY_MAX), (2, check.MEMORY_MAX), (3, 2 * check.MEMORY_MAX // 3)]
