@@ -162,9 +162,9 @@ class Runs:
             self.tried[task.value] = task.effort
         else:
             self.looks[task.value] = outcome.rotation
-        proved = {each.low for each in self.diagram.tori}
-        self.diagram.seen = [Seen((value,), seen) for value, seen in sorted(self.looks.items())
-                             if seen and value not in proved]
+        self.diagram.seen = [
+            Seen((value,), seen) for value, seen in sorted(self.looks.items()) if seen and not any(
+                each.low <= value <= each.high for each in self.diagram.tori)]
 
     def _looks(self):
         """The middles of the widest gaps between known values: where a torus is seen at one end,

@@ -164,6 +164,8 @@ def test_tori_are_tried_for_every_value_between_proved_ones(monkeypatch):
     tori_of.append(Existence(F("0.2"), F("0.4"), None, "every"))
     assert [task.start for _, task in again._of_ranges(7)] == ["low"] and not runs._of_ranges(1)
     assert again._is_known(F("0.3")) and not again._is_known(F("0.5"))
+    again.take(some.Task(F("0.3")), some.Outcome(1, (.2,), None))
+    assert [each.value for each in again.diagram.seen] == [(F(0),)]     # the others are proved
 
 
 @pytest.mark.parametrize("low", [0, "0.1"])
@@ -233,6 +235,12 @@ def test_no_try_takes_more_than_is_left():
     runs.tried[F("0.1")] = 5
     assert runs._proofs(6) == [some.Task(F("0.1"), 6, F(0))]
     assert runs._proofs(4) == [some.Task(F("0.05"), 4, F(0))]
+
+
+def test_tori_that_never_end(tmp_path):
+    """Nor is any value found above which there are none: the parameter bends V too little."""
+    found = diagram.explore(FourierMap({1: {"K": "1e-9"}}, K=(1, 3)), budget=2, jobs=1)
+    assert not found.none and "no absence of tori was proved" in found.report()
 
 
 def test_nothing_is_looked_for_where_v_is_0():
