@@ -194,8 +194,8 @@ def test_all_values_beyond_one(run, diagram, side, line, confirmed):
      "member 1: wrong checksum"),
     (lambda t: with_members(t, sealed(members(t)[1][0].replace("tree:\n", "tree:\nU"))), 1,
      "member 1: leaf 1 is undecided"),
-    (lambda t: with_members(t, sealed(members(t)[1][0].replace("at once: no", "at once: yes"))), 1,
-     "proof 1: larger parameters"),
+    (lambda t: with_members(t, sealed(members(t)[1][0].replace("at once: no", "at once: yes"))), 5,
+     "proof 1: that larger parameters"),
     (lambda t: with_members(t, sealed(re.sub("(?m)^v0: .*$", "v0: 0.5 0.1", members(t)[1][0]))), 1,
      "member 1: it is of a part of the torus only"),
     (lambda t: with_members(t, members(t)[1][1], sealed(re.sub(
