@@ -62,6 +62,7 @@ LEAST_SHARE = Fraction(49, 50)  # at this part of what doubles see: their roundi
 LEAST_RATIO = Fraction(21, 20)  # fiftieth there.  The bound is raised until within this ratio.
 MAX_STIFFNESS = 1e6             # A coordinate of a pass is made stiffer by at most this and 1.
 GUARD_PLACES = 10               # A quantity counts if it exceeds rounding by 10^GUARD_PLACES.
+MAX_DIGITS = MAX_PLACES - 2 * GUARD_PLACES      # A radius of 10^-MAX_DIGITS may be asked for.
 SHOWN_PLACES = 20               # Places of an interval in a report.
 EXPONENT_PLACES = 45            # Places of an exponent.
 GUARD_BITS = 64                 # Bits of midpoints beyond the decimal places.

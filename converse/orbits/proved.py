@@ -13,13 +13,13 @@ from typing import Any, Optional, Tuple
 
 import numpy as np
 
-from ..model.exact import Interval, rounded, rounded_text
+from ..model.exact import Interval, rounded, rounded_text, whole_number
 from ..model.potential import per_period, product
 from ..storage.files import ConverseError
 from ..storage.methods import provided
 from .limits import (DEFAULT_DIGITS, EIGENVALUE_ROUNDING, EXPONENT_PLACES, GUARD_PLACES,
-                     LEAST_RATIO, LEAST_SHARE, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
-                     MAX_SHADOW, MIN_LEAST_GUESS, NULL_EIGENVALUE, SHOWN_PLACES)
+                     LEAST_RATIO, LEAST_SHARE, MAX_DIGITS, MAX_MORE_PLACES, MAX_PLACES,
+                     MAX_PROOF_STEPS, MAX_SHADOW, MIN_LEAST_GUESS, NULL_EIGENVALUE, SHOWN_PLACES)
 from .state import PeriodicOrbit, expected
 
 EXACT_NULL = Fraction(NULL_EIGENVALUE)
@@ -166,11 +166,8 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None) -> ProvedOrbit:
     NotProved
         With a reason: among others, because the state is not stationary, or a saddle.
     """
-    wanted = DEFAULT_DIGITS if digits is None else digits
+    wanted = DEFAULT_DIGITS if digits is None else whole_number(digits, "digits", 1, MAX_DIGITS)
     expected(state)
-    if not isinstance(wanted, int) or not 1 <= wanted <= MAX_PLACES - 2 * GUARD_PLACES:
-        raise ValueError("digits is a number from 1 to %d, not %r"
-                         % (MAX_PLACES - 2 * GUARD_PLACES, digits))
     if state.eps == 0:
         raise NotProved("without a perturbation, at eps 0, no orbit is isolated")
     precision, Enclosure, growth = balls()

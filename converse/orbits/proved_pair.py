@@ -17,8 +17,8 @@ from ..model.balls import precision
 from ..model.exact import Interval, rounded, whole_number
 from .enclosure import Enclosure, ball, lower, square, upper
 from .exponents import growth
-from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
-                     MAX_STIFFNESS, SHOWN_PLACES)
+from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_DIGITS, MAX_MORE_PLACES, MAX_PLACES,
+                     MAX_PROOF_STEPS, MAX_STIFFNESS, SHOWN_PLACES)
 from .minimax import Pair, gap_of, turn_of
 from .proved import (NotProved, ProvedOrbit, TooFewPlaces, _eps, distance_words, grown, in_units,
                      prove)
@@ -88,8 +88,7 @@ def prove_pair(pair, digits=None):
     """See Pair.prove."""
     if pair.minimax.label == "not stationary":
         raise NotProved("the pass is not stationary, its gradient is %.1e" % pair.minimax._shadow)
-    most_digits = MAX_PLACES - 2 * GUARD_PLACES
-    digits = DEFAULT_DIGITS if digits is None else whole_number(digits, "digits", 1, most_digits)
+    digits = DEFAULT_DIGITS if digits is None else whole_number(digits, "digits", 1, MAX_DIGITS)
     minimum, reason = prove(pair.minimum, digits), ""
     first = digits + 2 * GUARD_PLACES
     last = min(first + 2 * MAX_MORE_PLACES, MAX_PLACES + 1)
@@ -106,7 +105,7 @@ def prove_pair(pair, digits=None):
             return found
         reason = "the flux is known to %.1e only" % width
         if 2 * pair.minimum.q * (minimum.action[1] - minimum.action[0]) > most:
-            minimum = prove(pair.minimum, min(places, most_digits))
+            minimum = prove(pair.minimum, min(places, MAX_DIGITS))
     raise NotProved("of the pass, with %d decimal places: %s" % (places, reason))
 
 

@@ -435,7 +435,7 @@ def test_flat():
     with pytest.raises(NotProved, match="too flat"):
         prove(orbits.straight(flat, (1, 1), 2).relax(0.01), digits=1)
     for digits in (0, -1, 10**9):
-        with pytest.raises(ValueError, match="digits is a number"):
+        with pytest.raises(ValueError, match="digits must be a whole number"):
             prove(state, digits)
     assert issubclass(NotProved, ConverseError)
 
