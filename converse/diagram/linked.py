@@ -8,22 +8,20 @@ ends of the range; nothing rests on the choice."""
 import math
 from dataclasses import replace
 from fractions import Fraction
-from itertools import product
 from operator import itemgetter
 from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from ..model.exact import decimal_text
-from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..model.region import halved, skips, with_image
 from ..prover import native, tree
-from ..prover.links import (Cell, Link, Links, Target, clusters, crests, hull_of, linked_tree,
-                            region_around, region_of, slices_of)
+from ..prover.links import (Cell, Link, Target, clusters, corners, crests, hull_of, linked_tree,
+                            region_around)
 from ..prover.proof import Proof, Tree
 from ..prover.run import prove, ready
 from ..prover.settings import Settings
 from ..prover.shifts import best_shifts
-from ..prover.starts import ways
+from ..prover.starts import at_corner, reaches, ways
 
 Point = Tuple[str, ...]                 # x*, as the prover takes it
 
@@ -147,16 +145,16 @@ class _Linking:
     def __init__(self, growth, problem, first, largest, points):
         self.growth, self.problem, self.first, self.largest = growth, problem, first, largest
         self.points, self.far = points, FAR_FACTOR[1 if problem.is_flat else 2]
-        self.ends = [_End(problem, largest, signs) for signs in product(
-            (-1, 1), repeat=len(problem.parts))]
+        self.ends = [_End(problem, min(largest, crest), signs) for crest, signs in zip(
+            crests(problem), corners(problem))]
 
     def best(self, cells: List[Cell], xstars: Sequence[Point]) -> "Optional[_Choice]":
         """The x* that excludes the cells at the ends of the range at the least cost; None: no x*
         was found.  These x* and rings around the first one are tried with ever more points, then
         rings around the best one."""
         best: Optional[_Choice] = None
-        boxes = [hull_of(self.problem, [cell for cell in cells if end.has(cell)] or cells)
-                 for end in self.ends]
+        boxes = [hull_of(self.problem, [cell for cell in cells if reaches(cell, end.signs)]
+                         or cells) for end in self.ends]
 
         def look(xstars, points):
             nonlocal best
@@ -199,11 +197,12 @@ class _Linking:
         problem, xstar = self.problem, choice.xstar
         shifts = () if not problem.parts else best_shifts(
             problem.part(choice.end.region), choice.end.amplitude, xstar, choice.text)
-        links = Links(problem, self.largest, self.first, xstar)
-        part = halved(problem.part(region_of(problem, cells, links, shifts), shifts), xstar)
-        self.growth.points += LINK_POINTS * len(links.known)
+        link = Link.between(problem, self.largest, self.first, xstar)
+        region = region_around(hull_of(problem, cells, shifts), link)
+        part = halved(problem.part(region, shifts), xstar)
+        self.growth.points += LINK_POINTS
         found = self.growth.grow(part, xstar, DEPTH, RANGE_FACTOR * max(self.points, choice.points))
-        return None if found is None else (Target("", links, with_image(part, xstar), shifts),
+        return None if found is None else (Target("", link, with_image(part, xstar), shifts),
                                            Tree(part, xstar, found[0].text))
 
 
@@ -221,17 +220,8 @@ class _End:
     """The problem at an end of its parameters, and a bound of B there."""
 
     def __init__(self, problem, largest, signs):
-        self.signs = signs
-        self.problem = replace(problem, map=SymplecticMap(problem.waves, [
-            term.at(signs) for term in problem.terms]), axes=problem.frame, alone=None, comments=(),
-            shifts=())
-        self.largest = min(largest, *crests(self.problem))
+        self.problem, self.largest, self.signs = at_corner(problem, signs), largest, signs
         self.links: Dict[Point, Link] = {}
-
-    def has(self, cell):
-        """Does the cell reach the end?"""
-        return all(i == (0 if sign < 0 else (1 << k) - 1)
-                   for sign, i, k in zip(self.signs, *slices_of(cell)))
 
     def region(self, box, first, xstar):
         """The problem in a region over x* to which the box over the first x* is linked."""

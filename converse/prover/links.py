@@ -6,13 +6,12 @@ box that depends on x* and x alone.  So where v' must lie in a region that is ex
 x, v is excluded over x*.  All of this is exact arithmetic on rationals; nothing of it is floating.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..model.exact import Ends, pi_bounds, root_bounds, sine_bounds
-from ..model.map import SymplecticMap
 from ..model.problem import Problem, Shifts, inverse
 from ..model.region import with_image
 from . import tree
@@ -97,14 +96,18 @@ class Link:
                    for (low, high), (a, b) in zip(self.image(box), region))
 
 
+def corners(problem: Problem) -> List[Tuple[int, ...]]:
+    """The corners of the parameters, each with -1 or 1 for a parameter."""
+    return list(product((-1, 1), repeat=len(problem.parts)))
+
+
 def crests(problem: Problem) -> List[Fraction]:
-    """Bounds of the largest eigenvalue of beta, with every wave at its largest, at the ends of the
-    parameters; of the first parameter the slowest.  In each parameter they are convex.
+    """Bounds of the largest eigenvalue of beta, with every wave at its largest, at the corners.
 
     Of n eigenvalues with the mean m and the sum s of the squares of their distances from m, none is
     more than m + root of (n - 1) s/n."""
     found, n = [], problem.size
-    for signs in product((-1, 1), repeat=len(problem.parts)):
+    for signs in corners(problem):
         d = _scalar(n, Fraction(2))
         for term in problem.terms:
             d = _with(d, abs(term.at(signs)), term.k)
@@ -112,20 +115,6 @@ def crests(problem: Problem) -> List[Fraction]:
         squares = sum(x * x for row in d for x in row) - n * mean ** 2
         found.append(_up(mean + _root(squares * (n - 1) / n)))
     return found
-
-
-def _largest(ends, index, cuts):
-    """A bound of a function that is convex in each parameter, in a slice of the parameters: the
-    largest of its interpolated values at the corners.  ends: its values at the patch's corners.
-    The checker's bound of B is the same or better, so its l is not less."""
-    found = []
-    for corner in product((0, 1), repeat=len(ends).bit_length() - 1):
-        values = ends
-        for i, k, upper in zip(index, cuts, corner):
-            half, at = len(values) // 2, Fraction(i + upper, 1 << k)
-            values = [low + at * (high - low) for low, high in zip(values[:half], values[half:])]
-        found.append(values[0])
-    return max(found)
 
 
 def _spread(problem, l, centre, reach):
@@ -163,40 +152,6 @@ def _over_pi(low, high):
     return -_up(-low), _up(high)
 
 
-class Links:
-    """The links from one point to another for the parameters of cells, each for those of one."""
-
-    def __init__(self, problem: Problem, largest: Fraction, here: Point,
-                 there: Point) -> None:
-        """largest: B, of all parameters of the problem."""
-        self.problem, self.largest, self.points = problem, largest, (here, there)
-        self.crests = crests(problem)
-        self.known: Dict[Tuple[Tuple[int, ...], ...], Link] = {}
-
-    def of(self, cell: Cell) -> Link:
-        """The link for the parameters of a cell."""
-        slices = slices_of(cell)
-        if slices not in self.known:
-            largest = min(self.largest, _largest(self.crests, *slices))
-            self.known[slices] = Link.between(_slice(self.problem, *slices), largest, *self.points)
-        return self.known[slices]
-
-
-def slices_of(cell: Cell) -> Cell:
-    """The indices and the cuts of a cell along the parameters."""
-    along = slice(tree.PARAMETERS[0], tree.PARAMETERS[-1] + 1)
-    return cell[0][along], cell[1][along]
-
-
-def _slice(problem, index, cuts):
-    """The problem for such a slice of its parameters."""
-    t = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(index, cuts)]
-    amplitude = [term.at(t) for term in problem.terms]
-    parts = [[p / (1 << k) for p in part] for part, k in zip(problem.parts, cuts)]
-    return replace(problem, map=SymplecticMap(problem.waves, amplitude, parts), axes=problem.frame,
-                   comments=(), shifts=())
-
-
 # ---- what one starting point leaves to others
 
 @dataclass(frozen=True)
@@ -204,7 +159,7 @@ class Target:
     """A part that cells may be linked to."""
 
     letter: str
-    links: Links
+    link: Link
     region: Box                         # in the middle of the parameters, with its mirror image
     shifts: Shifts = ()
 
@@ -280,26 +235,12 @@ def _boxes(problem, still=()):
 
 def region_around(box: Box, link: Link) -> Box:
     """A region that the cells of the box are linked into, its ends with few digits."""
-    return _rounded(link.image(box))
-
-
-def region_of(problem: Problem, cells: Sequence[Cell], links: Links, shifts: Shifts = ()) -> Box:
-    """A region that all these cells are linked into, its ends with few digits; shifts: by which it
-    is to move with the parameters, from there in their middle."""
-    slices: Dict[tuple, List[Cell]] = {}
-    for cell in cells:
-        slices.setdefault(slices_of(cell), []).append(cell)
-    return _rounded(_around(links.of(some[0]).image(hull_of(problem, some, shifts))
-                            for some in slices.values()))
-
-
-def _rounded(image):
     def around(low: Fraction, high: Fraction) -> Ends:
         spare, places = (high - low) / 32 + 2 * SPARE, 10 ** 5
         return (Fraction((low - spare) * places // 1, places),
                 Fraction(-((-high - spare) * places // 1), places))
 
-    return tuple(around(*ends) for ends in image)
+    return tuple(around(*ends) for ends in link.image(box))
 
 
 def wrong_letter(problem: Problem, largest: Fraction, xstar: Point, text: str,
@@ -311,11 +252,11 @@ def wrong_letter(problem: Problem, largest: Fraction, xstar: Point, text: str,
         if letter in text:
             assert part.xstar is not None
             at = part.problem
-            targets[letter] = Target(letter, Links(problem, largest, xstar, part.xstar),
+            targets[letter] = Target(letter, Link.between(problem, largest, xstar, part.xstar),
                                      with_image(at, part.xstar), at.shifts)
     boxes = {target.shifts: _boxes(problem, target.shifts) for target in targets.values()}
     return next((kind for kind, cell in tree.cells(text if targets else "") if kind in targets
-                 and not targets[kind].links.of(cell).leads_into(
+                 and not targets[kind].link.leads_into(
                      boxes[targets[kind].shifts](cell), targets[kind].region)), None)
 
 
@@ -338,7 +279,7 @@ def linked_tree(problem: Problem, text: str, targets: List[Target]) -> str:
         cell, node = walk.pending[-1], text[i]
         if open_[i]:
             here = {shifts: box(cell) for shifts, box in boxes.items()}
-            node = next((target.letter for target in targets if target.links.of(cell).leads_into(
+            node = next((target.letter for target in targets if target.link.leads_into(
                 here[target.shifts], target.region)), node)
         for _ in walk.feed(node):
             pass

@@ -8,7 +8,7 @@ is left is linked (links.py) to regions over others.  Nothing rests on how those
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from itertools import chain, combinations, compress, product
+from itertools import chain, combinations, compress
 from math import inf, prod
 from typing import List, Tuple
 
@@ -17,8 +17,7 @@ from ..model.map import SymplecticMap
 from ..model.problem import rows
 from ..model.region import folds, halved, with_image
 from . import native, tree
-from .links import (Link, Links, Target, clusters, crests, hull_of, linked_tree, region_around,
-                    region_of)
+from .links import Link, Target, clusters, corners, crests, hull_of, linked_tree, region_around
 from .proof import Tree
 from .settings import Settings
 from .shifts import best_shifts
@@ -70,10 +69,10 @@ def plan(problem, depth, xstar, undecided, largest, before, longest, threads, is
         if is_late():
             return None
         if best is not None and (_text(best) != xstar or shifts):
-            links = Links(problem, largest, xstar, _text(best))
-            region = region_of(problem, cells, links, shifts)
+            link = Link.between(problem, largest, xstar, _text(best))
+            region = region_around(hull_of(problem, cells, shifts), link)
             part = halved(problem.part(region, shifts), _text(best))
-            targets.append(Target(tree.LETTERS[before + len(parts)], links,
+            targets.append(Target(tree.LETTERS[before + len(parts)], link,
                                   with_image(part, _text(best)), shifts))
             parts.append(Tree(part, _text(best)))
             points += [best] if best not in points else []
@@ -143,10 +142,11 @@ class _Image:
 
     def __init__(self, problem, depth, xstar, largest, cells, longest, survey):
         """cells: whose hull is the box, those that there are for the weakest waves."""
-        signs, self.weakest = _weakest(problem)
-        cells = [cell for cell in cells if _reaches(cell, signs)] or cells
+        crest, signs = min(zip(crests(problem), corners(problem)))
+        cells = [cell for cell in cells if reaches(cell, signs)] or cells
+        self.weakest, self.box = at_corner(problem, signs), hull_of(problem, cells)
         self.problem, self.depth, self.xstar = problem, depth, xstar
-        self.largest, self.box = min(largest, *crests(self.weakest)), hull_of(problem, cells)
+        self.largest = min(largest, crest)
         self.longest, self.survey = longest, survey
 
     def part(self, point):
@@ -259,16 +259,14 @@ def has_width(problem):
     return any(map(any, problem.parts))
 
 
-def _weakest(problem):
-    """The corner of the parameters where the waves bend least, as signs, and the problem there."""
-    signs = min(product((-1, 1), repeat=len(problem.parts)), key=lambda signs: sum(
-        abs(term.at(signs)) * sum(k * k for k in term.k) for term in problem.terms))
-    return signs, replace(problem, map=SymplecticMap(
+def at_corner(problem, signs):
+    """The problem at a corner of its parameters."""
+    return replace(problem, map=SymplecticMap(
         problem.waves, [term.at(signs) for term in problem.terms]), axes=problem.frame, alone=None,
         comments=(), shifts=())
 
 
-def _reaches(cell, signs):
+def reaches(cell, signs):
     """Does the cell reach that corner of the parameters?"""
     return all(cell[0][axis] == (0 if sign < 0 else (1 << cell[1][axis]) - 1)
                for sign, axis in zip(signs, tree.PARAMETERS))

@@ -1,9 +1,8 @@
 """Several starting points: what is proved over one is linked to others."""
 
-import itertools
 import re
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from types import SimpleNamespace
 
@@ -18,8 +17,8 @@ from converse.check.links import displacement
 from converse.model import region
 from converse.model.map import MuldoonMap, SymplecticMap
 from converse.prover import links, native, run, starts, tree
-from converse.prover.links import (SPARE, Link, Links, Target, clusters, crests, hull_of,
-                                   least_slope, linked_tree, region_around)
+from converse.prover.links import (SPARE, Link, Target, clusters, hull_of, least_slope, linked_tree,
+                                   region_around)
 from converse.prover.native import Counts
 from converse.prover.proof import Tree
 from converse.prover.resume import counted
@@ -126,13 +125,6 @@ def test_the_most_that_a_wave_adds(y, low, high):
         assert most >= max((-p * sines).max() for p in (float(low), float(high))) - 1e-15
 
 
-def test_a_bound_over_a_slice_is_the_largest_of_its_corners():
-    """Of values at the ends of two parameters, the first being the slowest."""
-    for ends in itertools.permutations(range(4)):
-        assert links._largest(ends, (0, 0), (0, 0)) == 3
-    assert links._largest([0, 4], (1,), (2,)) == 2
-
-
 def test_quotients_by_pi_are_rounded_outwards():
     """The bounds of pi are next to it, and 1 is a multiple of 1/COARSE."""
     below, above = links.PI
@@ -151,19 +143,6 @@ def test_a_link_holds_for_all_parameters():
         assert all(a[0] <= b[0] and b[1] <= a[1] for a, b in zip(boxes[0], box))
 
 
-def test_links_of_cells_are_narrower():
-    """Of a slice of the parameters, the box holds those of its points, and lies in that of all."""
-    problem, points = line("0.0139", "0.0280"), (("0.858", "0.858"), ("0.88", "0.84"))
-    links = Links(problem, Fraction("3.5"), *points)
-    whole, quarter = (links.of(((0, 0, index), (1, 2, cuts))) for index, cuts in ((0, 0), (1, 2)))
-    assert links.of(((5, 5, 1), (6, 6, 2))) is quarter
-    width = Fraction("0.0141") / 4
-    for epsilon in (Fraction("0.0139") + width, Fraction("0.0139") + 2 * width):
-        point = Link.between(line(epsilon), crests(line(epsilon))[0], *points)
-        for a, b, c in zip(whole.box, quarter.box, point.box):
-            assert a[0] < b[0] <= c[0] and c[1] <= b[1] < a[1]
-
-
 @pytest.mark.parametrize("problem", [
     Problem(SymplecticMap([(1, 0), (1, 1)], ["0.5", "0"], [["0", "0.5"]]), v0=(0, 1), v1=(0, 1)),
     Problem(MuldoonMap(("0.3", "0.6"), ("0.3", "0.6"), "0")),
@@ -180,32 +159,22 @@ def test_the_checker_links_no_worse(problem):
                                 None, (Fraction(1), Fraction(1)), {"most_cuts": 12}, "no",
                                 "234PPPP", ""))
     for points in ((("0.85", "0.86"), ("0.88", "0.84")), (("1.32", "1.32"), ("1.82", "1.82"))):
-        links = Links(problem, Fraction(criterion.B, criterion.fixed.one), *points)
+        link = Link.between(problem, Fraction(criterion.B, criterion.fixed.one), *points)
         here, there = (tuple(map(Fraction, point)) for point in points)
         for index, cuts in ((0, 0, 0), (0, 0, 0)), ((1, 0, 0), (1, 0, 0)), (
                 (7, 7, 0), (4, 4, 0)), ((2, 12, 1), (4, 4, 2)):
             cell = (0, 0, *index), (0, 0, *cuts)
-            for (a, b), (low, high) in zip(links.of(cell).box, displacement(
+            for (a, b), (low, high) in zip(link.box, displacement(
                     criterion, cell, here, there)):
                 assert a - SPARE < low < high < b + SPARE
 
 
 # ---- letters
 
-@dataclass
-class Everywhere:
-    """The same link for all cells."""
-
-    link: Link
-
-    def of(self, cell):
-        return self.link
-
-
 @pytest.mark.slow
 def test_letters_stand_as_high_up_as_may_be():
     problem = Problem(MuldoonMap("0.1", "0.1", "0.2"), v0=(0, 1), v1=(0, 1))
-    still = Everywhere(Link(((Fraction(0), Fraction(0)),) * 2))
+    still = Link(((Fraction(0), Fraction(0)),) * 2)
     text = "00PU1UP"
     assert [hull_of(problem, cells) for cells in clusters(problem, text)] == [
         ((Fraction(1, 4), 1), (0, 1))]
@@ -216,7 +185,7 @@ def test_letters_stand_as_high_up_as_may_be():
     assert linked_tree(problem, text, [left]) == "0c1UP"
     tight = Target("d", still, ((Fraction(1, 4), Fraction(1)), (Fraction(0), Fraction(1))))
     assert linked_tree(problem, text, [tight]) == text      # nothing to spare
-    far = Target("e", Everywhere(Link(((Fraction(3), Fraction(3)),) * 2)), whole.region)
+    far = Target("e", Link(((Fraction(3), Fraction(3)),) * 2), whole.region)
     assert linked_tree(problem, text, [far]) == text
 
 
@@ -312,7 +281,7 @@ def test_parts_that_nothing_is_linked_to(linked, tmp_path, ending, parts):
 @pytest.mark.slow
 def test_one_region_may_do_for_two_clusters(easily, monkeypatch):
     """A part that no cell is linked to, as those before it take them all, is not written."""
-    monkeypatch.setattr(starts, "region_of", lambda *_: ((Fraction(-1), Fraction(2)),) * 2)
+    monkeypatch.setattr(starts, "region_around", lambda *_: ((Fraction(-1), Fraction(2)),) * 2)
     monkeypatch.setattr(starts, "_best_start", lambda *_: (Fraction("0.86"), Fraction("0.85")))
     proof = prove(line("0.015"), method="loewner", time_limit=20)
     assert len(proof.parts) == 1 and set(tree.LETTERS) & set(proof.tree) == {"a"}

@@ -13,7 +13,7 @@ from converse import ConverseError, Problem, Proof, Settings, prove
 from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.region import skips, symmetries_used
 from converse.prover import native, tree
-from converse.prover.links import (PI, SPARE, Link, Links, Target, hull_of, linked_tree, region_of,
+from converse.prover.links import (PI, SPARE, Link, Target, hull_of, linked_tree, region_around,
                                    wrong_letter)
 from converse.prover.proof import Tree
 from converse.prover.run import ready
@@ -117,10 +117,10 @@ def lands(problem, cell, link, target):
 def test_links_lead_into_regions_that_move(mine, theirs):
     """To the edge: an end that is nearer by any amount is not enough."""
     problem = PATCH.part((PATCH.v0, PATCH.v1), mine)
-    rng, links = rng_for("shifted links %s %s" % (mine, theirs)), Links(problem, B, HERE, THERE)
+    rng = rng_for("shifted links %s %s" % (mine, theirs))
+    link = Link.between(problem, B, HERE, THERE)
     for _ in range(10 * TORTURE):
         cell = random_cell(rng, 2)
-        link = links.of(cell)
         seen = [[x - sum(pair[i] * t for pair, t in zip(theirs, ts)) for i, x in enumerate(v)]
                 for ts, v in corners(problem, cell)]
         exact = [[min(xs) + d0 - SPARE, max(xs) + d1 + SPARE]
@@ -129,7 +129,7 @@ def test_links_lead_into_regions_that_move(mine, theirs):
             region = [list(ends) for ends in exact]
             if axis is not None:
                 region[axis][end] += (1, -1)[end] * Fraction(1, 10 ** 30)
-            target = Target("a", links, tuple(map(tuple, region)), theirs)
+            target = Target("a", link, tuple(map(tuple, region)), theirs)
             assert lands(problem, cell, link, target) == (axis is None)
             part = Tree(problem.part(target.region, theirs), THERE)
             whole = tree_of(cell)
@@ -156,18 +156,19 @@ def test_a_region_for_cells_takes_them_all():
     rng = rng_for("shifted regions")
     for mine, theirs, there in product(((), TWO), ((), TWO), (HERE, THERE)):
         problem = PATCH.part((PATCH.v0, PATCH.v1), mine)
-        links = Links(problem, B, HERE, there)
+        link = Link.between(problem, B, HERE, there)
         cells = [random_cell(rng, 2) for _ in range(5)]
-        target = Target("a", links, region_of(problem, cells, links, theirs), theirs)
+        region = region_around(hull_of(problem, cells, theirs), link)
+        target = Target("a", link, region, theirs)
         for cell in cells:
-            assert lands(problem, cell, links.of(cell), target)
+            assert lands(problem, cell, link, target)
             assert wrong_letter(problem, B, HERE, tree_of(cell), [
                 Tree(problem.part(target.region, theirs), there)]) is None
         sizes = [high - low for low, high in target.region]
         hull = hull_of(problem, cells, theirs)
         assert all(size < (high - low) * Fraction(9, 8) + 2 * (d1 - d0) + Fraction(1, 1000)
                    for size, (low, high), (d0, d1) in zip(
-                       sizes, hull, Link.between(problem, B, HERE, there).box))
+                       sizes, hull, link.box))
 
 
 def test_a_point_is_linked_to_itself():
@@ -194,16 +195,17 @@ def begun():
     cells = [cell for kind, cell in tree.cells(grown.text) if kind == "U"]
     assert len(cells) > 3
     largest = Fraction(search.constants["B"])
-    first, parts = Links(problem, largest, HERE, HERE), []
+    first, parts = Link.between(problem, largest, HERE, HERE), []
     shifts = (Fraction("-0.05"), Fraction("0.03")),
-    parts.append(Tree(problem.part(region_of(problem, cells, first, shifts), shifts), HERE))
+    parts.append(Tree(problem.part(region_around(
+        hull_of(problem, cells, shifts), first), shifts), HERE))
     text = linked_tree(problem, grown.text, [
         Target("a", first, (parts[0].problem.v0, parts[0].problem.v1), shifts)])
     assert "a" in text and "U" not in text
     other, there = (Fraction("-0.04"), Fraction(0)), ("0.85", "0.85")
     middle = problem.part((parts[0].problem.v0, parts[0].problem.v1), shifts)
-    second = Links(middle, largest, HERE, there)
-    region = region_of(middle, [tree.ROOT], second, (other,))
+    second = Link.between(middle, largest, HERE, there)
+    region = region_around(hull_of(middle, [tree.ROOT], (other,)), second)
     parts = [replace(parts[0], text="b"), Tree(middle.part(region, (other,)), there)]
     return Proof((Tree(problem, HERE, text), *parts), Settings("loewner"), replace(
         grown.counts, undecided=0, linked=text.count("a") + 1), search.constants)
