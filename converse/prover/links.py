@@ -9,7 +9,7 @@ x, v is excluded over x*.  All of this is exact arithmetic on rationals; nothing
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from ..model.exact import Ends, pi_bounds, root_bounds, sine_bounds
 from ..model.problem import Problem, Shifts, inverse
@@ -163,6 +163,11 @@ class Target:
     region: Box                         # in the middle of the parameters, with its mirror image
     shifts: Shifts = ()
 
+    def takes(self, problem: Problem) -> Callable[[Cell], bool]:
+        """A function that tells whether the cells of a problem may be linked to it."""
+        box = _boxes(problem, self.shifts)
+        return lambda cell: self.link.leads_into(box(cell), self.region)
+
 
 def clusters(problem: Problem, text: str) -> List[List[Cell]]:
     """The undecided cells of the tree, those that are near each other in one cluster; at most
@@ -206,24 +211,11 @@ def _joined(cells: Sequence[Cell], sizes: Sequence[Fraction]) -> List[List[Cell]
 def hull_of(problem: Problem, cells: Sequence[Cell], still: Shifts = ()) -> Box:
     """The box that holds the cells for all their parameters; still: as seen from what moves
     by such shifts."""
-    if problem.shifts or any(map(any, still)):
-        return _around(map(_boxes(problem, still), cells))
-
-    def side(axis: int, ends: Ends) -> Ends:
-        low = min(Fraction(index[axis], 1 << cuts[axis]) for index, cuts in cells)
-        high = max(Fraction(index[axis] + 1, 1 << cuts[axis]) for index, cuts in cells)
-        start, length = ends[0], ends[1] - ends[0]
-        return start + length * low, start + length * high
-
-    return tuple(map(side, tree.ANGLES, problem.region))
-
-
-def _around(boxes):
     return tuple((min(low for low, _ in ends), max(high for _, high in ends))
-                 for ends in zip(*boxes))
+                 for ends in zip(*map(_boxes(problem, still), cells)))
 
 
-def _boxes(problem, still=()):
+def _boxes(problem, still):
     """A function from cells to boxes, seen from what moves by the shifts `still`."""
     prism = tree.prisms(problem, still)
 
@@ -247,17 +239,15 @@ def wrong_letter(problem: Problem, largest: Fraction, xstar: Point, text: str,
                  parts: Sequence[Tree]) -> Optional[str]:
     """The letter of the first leaf of a tree over xstar that is linked to a part and may lead out
     of its region.  None: there is none.  largest: B; parts: a, b, ... of the proof."""
-    targets = {}
+    takes = {}
     for letter, part in zip(tree.LETTERS, parts):
         if letter in text:
             assert part.xstar is not None
-            at = part.problem
-            targets[letter] = Target(letter, Link.between(problem, largest, xstar, part.xstar),
-                                     with_image(at, part.xstar), at.shifts)
-    boxes = {target.shifts: _boxes(problem, target.shifts) for target in targets.values()}
-    return next((kind for kind, cell in tree.cells(text if targets else "") if kind in targets
-                 and not targets[kind].link.leads_into(
-                     boxes[targets[kind].shifts](cell), targets[kind].region)), None)
+            takes[letter] = Target(letter, Link.between(problem, largest, xstar, part.xstar),
+                                   with_image(part.problem, part.xstar),
+                                   part.problem.shifts).takes(problem)
+    return next((kind for kind, cell in tree.cells(text if takes else "")
+                 if kind in takes and not takes[kind](cell)), None)
 
 
 def linked_tree(problem: Problem, text: str, targets: List[Target]) -> str:
@@ -273,14 +263,12 @@ def linked_tree(problem: Problem, text: str, targets: List[Target]) -> str:
         else:
             end[i], open_[i] = i + 1, text[i] == "U"
     nodes = []
-    boxes = {target.shifts: _boxes(problem, target.shifts) for target in targets}
+    letters = [(target.letter, target.takes(problem)) for target in targets]
     walk, i = tree.Walk(), 0
     while i < size:
         cell, node = walk.pending[-1], text[i]
         if open_[i]:
-            here = {shifts: box(cell) for shifts, box in boxes.items()}
-            node = next((target.letter for target in targets if target.link.leads_into(
-                here[target.shifts], target.region)), node)
+            node = next((letter for letter, takes in letters if takes(cell)), node)
         for _ in walk.feed(node):
             pass
         nodes.append(node)
