@@ -614,6 +614,7 @@ def test_where_a_search_is_given_up_does_not_depend_on_when_it_is_looked_at(monk
 def test_whether_long_orbits_help_is_asked_once(monkeypatch, tmp_path):
     """A continued run has the answer, from the proof or from its file."""
     asked, path = [], tmp_path / "a.proof"
+    monkeypatch.setattr(run, "MANY_LEAVES", 500)
     monkeypatch.setattr(run, "longest", lambda *_: asked.append(1) or native.ORDINARY)
     proof = prove(StandardMap("0.97"), backup=path)
     assert proof.hopeless and asked == [1] and "\nlong orbits: no\n" in path.read_text()
