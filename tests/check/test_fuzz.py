@@ -16,8 +16,6 @@ from conftest import around
 from files import sealed, tree_of
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
-from claims import definite, true_bound
-from trees import with_field, with_tree
 from test_tori import BODY as TORUS
 
 import converse
@@ -29,6 +27,8 @@ from converse.storage.files import ConverseError
 from converse.tori import certificate
 
 from checker import check, says_the_same
+from claims import definite, true_bound
+from trees import with_field, with_tree
 from truth import TORTURE
 
 MANY = settings(max_examples=200 * TORTURE, deadline=None,
