@@ -39,7 +39,8 @@ POINT = 1e-4                            # seconds of a proof for each point of i
 BORDERS, LOOKS, PROOFS = 2, 2, 1        # of a round
 
 
-RANGES = Fraction(1), Fraction(1, 2), Fraction(1, 4)    # parts between proved tori, that are tried
+RANGES = Fraction(1), Fraction(1, 2), Fraction(1, 4)    # parts between proved tori, that are tried,
+LATER = 16                              # so many times less urgent than ends of runs of that width
 
 
 class _Stopped(Exception):
@@ -216,8 +217,9 @@ class Runs:
             ends = sorted({first, *(x for x in single if first <= x <= last)})
             for low, high in zip(ends, ends[1:]):
                 parts = [low + share * (high - low) for share in RANGES if low not in begun]
-                found += [(-float(end - low) / effort, Task(end, effort, low, single[high]))
-                          for end in parts if (low, end) not in self.ranges][:1]
+                found += [(-float(end - low) / LATER / effort, Task(
+                    end, effort, low, single[high])) for end in parts
+                    if (low, end) not in self.ranges][:1]
         return found
 
     def _proved(self):

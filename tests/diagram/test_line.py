@@ -147,13 +147,14 @@ def test_a_run_is_proved_up_to_the_last_value_that_can_be(monkeypatch, last):
 
 def test_tori_are_tried_for_every_value_between_proved_ones(monkeypatch):
     """Then for the lower half, or the lowest quarter."""
-    runs = runs_of({"0": .2, "0.2": .2, "0.6": .2, "0.61": None})
+    runs = runs_of({"0": .2, "0.2": .2, "0.6": .2, "0.8": None})
     tori_of = [Existence(F(value), F(value), None, name) for value, name in (
         ("0.2", "low"), ("0.6", "high"))]
     monkeypatch.setattr(Diagram, "tori", tori_of)
     low, high = ("low", "0", "0.2"), ("high", "0.2", "0.6")
     for ends in ("0.2", "0.6"), ("0.1", "0.4"), ("0.05", "0.3"), ():
         asked = [task for _, task in runs._of_ranges(7)]
+        assert not any(task.start for task in runs._proofs())   # first, beyond the last torus
         assert asked == [some.Task(F(end), 5, F(back), start) for end, (start, back, _) in zip(
             ends, (low, high))]
         for task in asked:
