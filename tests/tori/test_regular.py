@@ -100,15 +100,15 @@ def test_the_frame_follows_the_decay():
 
 @pytest.mark.slow
 def test_of_tori_on_equal_meshes_the_one_of_the_fewest_modes_is_taken(monkeypatch):
-    made, of_orbit = [], Way.of_orbit
+    made, finished = [], Way.finished
 
-    def recorded(way, *given):
-        found = of_orbit(way, *given)
+    def recorded(way, rough):
+        found = finished(way, rough)
         aim = plan(found)
         made.append((aim.modes(found.mesh), aim.mesh(found.mesh).points, way.rotation))
         return found
 
-    monkeypatch.setattr(Way, "of_orbit", recorded)
+    monkeypatch.setattr(Way, "finished", recorded)
     rotation = find(StandardMap("0.64")).rotation
     modes, points, vectors = zip(*made)
     assert len(modes) == 3 and len(set(modes)) == 3 and len(set(points)) == 1
