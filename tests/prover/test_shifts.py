@@ -9,7 +9,7 @@ from itertools import product
 import pytest
 from files import line
 
-from converse import ConverseError, Problem, Proof, Settings, prove
+from converse import ConverseError, FourierMap, Problem, Proof, Settings, prove
 from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.region import skips, symmetries_used
 from converse.prover import native, tree
@@ -347,3 +347,11 @@ def test_shifts_in_radians():
         scale = 10 ** places
         off = abs(shift) * PI[1] - Fraction(abs(shift) * (PI[0] * scale // 1) // 1, scale)
         assert off <= halves[1][i] - halves[0][i] <= Fraction(2, scale)
+
+
+def test_mirror_images_of_parameters_that_change_places():
+    """Where the exchange of the angles gives the parameters another order, the checker agrees."""
+    K = Fraction("0.19"), Fraction("0.194")
+    family = FourierMap({(1, 0): {"K0": 1}, (0, 1): {"K1": 1}, (1, 1): "0.4"}, K0=K, K1=K)
+    proof = prove(Problem(family, axes=(1, 0, 0, 1)), xstar=("0.86", "0.86"), jobs=1)
+    assert "S" in proof.tree and proof.verify().status == 0
