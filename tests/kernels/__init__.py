@@ -223,4 +223,4 @@ def grow(search: Any, leaves: int = native.MANY) -> str:
     check(native.lib.cv_look(search, 1, view))
     text = native.ffi.unpack(view.tree, view.length).decode("ascii") if view.length else ""
     native.lib.cv_forget_view(view)
-    return text
+    return text.rstrip("?")
