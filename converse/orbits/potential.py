@@ -25,6 +25,7 @@ Source = Union[SymplecticMap, "Potential"]
 Numerators = Union[int, Sequence[int]]      # the p of a type (p, q)
 
 TURN = 2 * math.pi
+STUDIED = "trig", "froeschle", "standard"   # names of the potentials at the end of this file
 # The scales of Fourier sums, as formulas name them.
 PER_PERIOD, TRIG = "1/(4 pi^2)", "8 sqrt 2/sqrt(207 + 33 sqrt 33)"
 
@@ -42,7 +43,8 @@ def known(source: Any) -> "Potential":
 
 @lru_cache(maxsize=64)
 def _of_map(source, name):
-    return Fourier.of(source.potential(), name, None, PER_PERIOD, TURN)
+    return Fourier.of(source.potential(), name + ".json" * (name in STUDIED), None, PER_PERIOD,
+                      TURN)
 
 
 def told(progress):
