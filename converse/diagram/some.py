@@ -146,12 +146,13 @@ class Runs:
         """What is done next: looks at a grid, and as soon as a torus is seen a try to prove one;
         then tries, and looks.
 
-        seconds -- No try may take more."""
+        seconds -- No try may take more, nor may all looks."""
         grid = [nice(self.low + (self.high - self.low) * i / GRID[self.n], self.grain)
                 for i in range(GRID[self.n] + 1)]
         new = [Task(value) for value in dict.fromkeys(grid) if not self._is_known(value)]
         tries = [] if new and self.diagram.tori else self._proofs(seconds)
-        return [*tries, *(new[:BORDERS + LOOKS] or self._looks())]
+        looks = new[:BORDERS + LOOKS] or self._looks()
+        return [*tries, *looks[:int(max(0, min(len(looks), seconds / LOOKING[self.n])))]]
 
     def take(self, task: Task, outcome: Optional[Outcome]) -> None:
         """Records what became of a task; None: it was not done."""

@@ -236,6 +236,7 @@ def test_no_try_takes_more_than_is_left():
     runs.tried[F("0.1")] = 5
     assert runs._proofs(6) == [some.Task(F("0.1"), 6, F(0))]
     assert runs._proofs(4) == [some.Task(F("0.05"), 4, F(0))]
+    assert not runs.round(0.6) and len(runs.round(1.9)) == 2 and not runs.round(-1)
 
 
 def test_tori_that_never_end(tmp_path):
