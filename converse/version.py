@@ -1,3 +1,3 @@
 """The program's version.  Only check/version.py repeats it."""
 
-__version__ = "6.2.0"
+__version__ = "6.3.0"

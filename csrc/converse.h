@@ -99,7 +99,8 @@ int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xs
                   int dp, int depth, int stubborn, int as_printed, int longest);
 void cv_search_free(cv_search *s);
 
-/* No thread may be in cv_work meanwhile: takes up a tree, and forgets the one before and its counts.
+/* No thread may be in cv_work meanwhile: takes up a tree, and forgets the one before and
+   its counts.
    text: the tree in preorder, or several ones, with a ? for each of the cells, in this order, that
    are to be decided. */
 int cv_restart(cv_search *s, const char *text, const cv_cell *cells);

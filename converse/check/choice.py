@@ -5,8 +5,7 @@ No theorem rests on them.  Any n will do, and halves of a leaf along any axis ti
 
 import math
 
-from .arith import (DIAGONAL, NEWTON_STEPS, full, newton, spread, times, trace,
-                    with_determinant)
+from .arith import DIAGONAL, NEWTON_STEPS, full, newton, spread, times, trace, with_determinant
 from .limits import HALVINGS_APART_MAX, MATTERS_MIN
 
 

@@ -10,7 +10,7 @@ in its `error`.  Bounds of errors are rounded upwards.
 import collections
 import itertools
 
-from .arith import (DIAGONAL, combined, dot, entries, pairs_of, times, turn_of, with_determinant)
+from .arith import DIAGONAL, combined, dot, entries, pairs_of, times, turn_of, with_determinant
 from .choice import test_vectors, trimmed
 from .limits import FIRST_TRY_SITES, MAX_SITES
 

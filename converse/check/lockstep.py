@@ -15,8 +15,8 @@ import random
 from dataclasses import replace
 from fractions import Fraction
 
-from .arith import (DIAGONAL, ROWS, cofactors, dot, entries, fixed_of, newton, pairs_of,
-                    trace, turn_of, with_determinant)
+from .arith import (DIAGONAL, ROWS, cofactors, dot, entries, fixed_of, newton, pairs_of, trace,
+                    turn_of, with_determinant)
 from .choice import least, worst_axis
 from .claim import ANGLE_AXES
 from .criterion import axes_of

@@ -96,8 +96,8 @@ def attempt(family: SymplecticMap, task: Task, stop: Callable[[], bool] = bool
         search = Search(Problem.of(family), min(POINTS, int(task.effort / POINT)), None, work)
         if task.start:
             start, = tori_of(check.content(task.start.encode()))
-            torus = prove(family, start.rotation, points=search.points, progress=work, **(
-                {"start": start} if search.amplitude(-1).any() else {}))
+            torus = prove(family, start.rotation, points=search.points, progress=work,
+                          start=start if search.amplitude(-1).any() else None)
         elif task.effort:
             torus = prove(search.farthest(1 if task.value == task.ends[1] else -1), progress=work)
         else:

@@ -178,12 +178,13 @@ def _quotient(field, weights, above, below):
 # ---- two angles
 
 def cubics(target: Sequence[Union[Fraction, float]], within: Fraction, count: int = COMPARED,
-           norm: np.ndarray = np.eye(2)) -> List[Rotation]:
+           norm: Optional[np.ndarray] = None) -> List[Rotation]:
     """Vectors of both fields within some distance of a place, those with the best divisors first,
     as far as doubles can tell.
 
-    norm -- a matrix of determinant 1 or -1: |k| adds the absolute values of norm.k"""
+    norm -- a matrix of determinant 1 or -1: |k| adds the absolute values of norm.k; None: of k"""
     target, delta = [Fraction(w) for w in target], _delta(2, within)
+    norm = np.eye(2) if norm is None else norm
     corners = np.linalg.inv(norm).T             # of the ball |k| <= 1
     kept: List[tuple] = []
     for polynomial in FIELDS:

@@ -182,7 +182,7 @@ class Mesh:
         return transform(values, axes=self.axes, norm="forward")
 
     def moved(self, coefficients: np.ndarray, other: "Mesh") -> np.ndarray:
-        """The same function on another grid of the same group, without the modes that the grid cannot hold."""
+        """The same function on another grid of the group, without the modes that it cannot hold."""
         there = self.inside & (abs(coefficients).max(0) > 0)
         if self.real:
             return other.spread(self.k[:, there], coefficients[:, there])

@@ -15,7 +15,7 @@ from .newton import Frame, Mesh, combined, inverted, sizes_holding, triangular, 
 from .rotation import Rotation
 from .torus import Strip
 
-MARGIN = 100.0              # Factor by which the error of a torus is to be below the one that is needed.
+MARGIN = 100.0              # Factor by which the error of a torus is to be below the error needed.
 WEIGHTS = 1, 2, 3, 4, 5, 6, 8, 10, 12, 16       # ratios of alpha
 TRIED = 3                   # So many are tried, those nearest to the ratio of the rates of decay.
 # E is computed for |k| up to EDGE times the longest mode that matters.  The torus takes up to ROOM

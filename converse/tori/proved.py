@@ -23,8 +23,8 @@ from .nearest import Place, rotation_of
 from .rotation import Rotation
 from .torus import Torus, family, problem_of
 
-# If the residual exceeds the admissible one by a factor below MOST_LACKING, the torus is found again,
-# with a margin of FINER times this factor.
+# If the residual exceeds the admissible one by a factor below MOST_LACKING, the torus is found
+# again, with a margin of FINER times this factor.
 MOST_LACKING, FINER = 1e8, 1e4
 
 

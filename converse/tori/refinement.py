@@ -121,7 +121,7 @@ def accepted(margin: float) -> float:
 
 def refined(torus: Torus, modes: Modes, plan: Plan, margin: float,
             last: bool = True) -> Tuple[Torus, float]:
-    """The torus after as many corrections as help, and about ||E||_rho over the norm that the theorem needs.
+    """The torus after as many corrections as help, and about ||E||_rho over the norm needed.
 
     last -- if not, a torus that needs more modes is not corrected further"""
     mesh, before = modes.mesh, inf

@@ -43,7 +43,7 @@ ENTRIES = 10 ** 6           # A matrix of modes and angles has at most about the
 
 def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
     """The potential in the middle of the patch of a map, and the change of each amplitude by
-    the parameter s = 1, None without a parameter.  Waves that are 0 in the whole patch are left out.
+    the parameter s = 1, None without a parameter.  Waves that are 0 in the patch are left out.
 
     Its dimension is 1 if all these waves have k1 = 0, else 2.
     TypeError: it is not a map, nor the problem of one.  ValueError: there is more than one

@@ -26,8 +26,8 @@ int patch_read(patch *p, const cv_problem *given);
 
 int is_identity(const patch *p); /* Is the frame? */
 
-/* Are these the thesis's waves, in its order and without phases, each with its own parameter, in the
-   identity frame and without shifts? */
+/* Are these the thesis's waves, in its order and without phases, each with its own parameter, in
+   the identity frame and without shifts? */
 int is_of_thesis(const patch *p);
 
 /* The amplitudes in doubles, where each parameter is t. */

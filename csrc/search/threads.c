@@ -108,7 +108,7 @@ static void grow(worker *w)
     }
 }
 
-/* A workspace that no thread has, or a new one; NULL: no memory.  The first is that of cv_set_up. */
+/* A workspace that no thread has, or a new one; NULL: no memory.  The first is cv_set_up's. */
 static worker *free_worker(cv_search *s)
 {
     worker *w = s->workers;

@@ -196,7 +196,8 @@ def starved(call, *arguments):
 def new(n=-1, dp=35, method=0, depth=30):
     global left
     left = n
-    code = starved(lib.cv_search_new, handle, problems[method], ffi.NULL, method, dp, depth, 0, 0, 0)
+    code = starved(lib.cv_search_new, handle, problems[method], ffi.NULL, method, dp, depth, 0, 0,
+                   0)
     if code == 0:
         code = starved(lib.cv_set_up, handle[0])
         if code:
