@@ -112,8 +112,8 @@ static void show_x1(const loewner_cell *prism, double upper[2], double lower[2])
 
 /* Index and cuts of five axes -> upper halves of x_1, widths of v0, v1, three shifts of each, how
    many columns the prisms have, would a cut of each axis help, and the lower halves; of 4 waves
-   that are there p, p_low, err_amp, and three parts each; l; B at the corners of the parameters, the
-   lower end of the first parameter first. */
+   that are there p, p_low, err_amp, and three parts each; l; B at the corners of the parameters,
+   the lower end of the first parameter first. */
 static int k_cell(const request *r, double y[])
 {
     const cv_cell cell = cell_of(r);
