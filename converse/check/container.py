@@ -20,7 +20,7 @@ CONTROL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f]")  # of a terminal; a tab i
 
 @dataclass(frozen=True)
 class Format:
-    """What a kind of file has in its container.
+    """The container of a kind of file.
 
     Attributes
     ----------

@@ -36,7 +36,7 @@ VERDICTS = {VERIFIED: "verified", PART: "verified in part", SPOT_CHECK: "spot ch
 
 @dataclass(frozen=True)
 class Result:
-    """What came of a check in which nothing failed: true only if the whole claim is verified and
+    """The result of a check in which nothing failed: true only if the whole claim is verified and
     its region is the whole torus, or all that a diagram or a portrait says is proved.  (All else is
     an exception.)
 

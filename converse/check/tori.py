@@ -31,7 +31,7 @@ SHARES_OF_LOSS = [Fraction(x, 20) for x in (1, 2, 4, 8, 16)]        # s of the t
 CHANGES = [Fraction(x, 1000) for x in (1, 2, 5, 10, 20, 40, 70, 100, 150)]     # t l0 m0 a0
 ROUGH_BITS = 64                         # The series for the constants have these bits.
 STEPS = 3                               # So many steps are followed one by one, if they must be.
-FEW_MODES = 1 << 14                     # Any torus may need so many. They take seconds.
+FEW_MODES = 1 << 14                     # Any torus may need these. They take seconds.
 INVERSE_MODES = 64                      # Modes of L^-1 per mode of u. Sparse tori needed 17.
 TRIES = 6                               # The number of modes is raised at most so often.
 POWERS = "", "t", "t^2", "t^3"
@@ -595,7 +595,7 @@ class Verified:
 
 
 class Setting:
-    """What all pieces of a claim have in common: field, norm and small divisors.
+    """The common parts of all pieces of a claim: field, norm and small divisors.
 
     Raises Rejected, if a mode is outside of the group that the waves' k generate, and what Field
     and Divisors raise.

@@ -39,7 +39,7 @@ class Parser(argparse.ArgumentParser):
         self.add_argument("--version", action="version", version="%(prog)s " + __version__)
 
     def _get_value(self, action, arg_string):
-        """What a type makes of an argument; its ValueError says what is wrong."""
+        """The value of an argument by its type, whose ValueError names the fault."""
         try:
             return self._registry_get("type", action.type, action.type)(arg_string)
         except ValueError as error:
@@ -309,7 +309,7 @@ def ended(command, run, interrupted):
 
 
 def kept(options):
-    """What an interrupted run has left."""
+    """The phrase about what an interrupted run has left."""
     file = options.restore or options.backup
     if file is None:
         return "nothing is kept without -b FILE"

@@ -124,7 +124,7 @@ def _check_outputs(options):
 
 
 class _Finding:
-    """What is found: each state is reported, and proved if asked for, when it is known."""
+    """The states that are found: each is reported, and proved if asked for, at once."""
 
     def __init__(self, options, line):
         self.options, self.line = options, line

@@ -119,7 +119,7 @@ def _keep(options):
 
 
 def _left(options):
-    """What the file of the torus that was found is good for, "" if there is none."""
+    """The phrase about the use of the file of the torus that was found, "" if there is none."""
     if getattr(options, "backup", None) is None or not os.path.exists(_found(options)):
         return ""
     return "%s has the torus that was found; converse-check tries to verify it, and -r starts " \

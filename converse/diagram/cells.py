@@ -13,9 +13,9 @@ from ..prover.run import prove, ready
 from ..prover.settings import Settings
 from .value import Box, Diagram
 
-CELL_POINTS = 1 << 15                   # A cell is given up after so many points of orbits,
-CELL_LEAVES = 1 << 14                   # or with so many prisms.
-TRY_POINTS = 1 << 15                    # A try costs as much as so many more: x* is chosen.
+CELL_POINTS = 1 << 15                   # A cell is given up after this number of points of orbits,
+CELL_LEAVES = 1 << 14                   # or of prisms.
+TRY_POINTS = 1 << 15                    # A try costs as much as these more: x* is chosen.
 CELL = "cell "                          # The lines of Diagram.search begin with this.
 
 
@@ -32,7 +32,7 @@ def search(diagram: Diagram, filling, points: int, tell) -> None:
     filling : prover.workers.Filling
         Its workers try the cells.
     points
-        The search ends when the diagram has so many points.
+        The search ends when the diagram has this number of points.
     tell
         tell(text) is called with a line about each proof.
     """

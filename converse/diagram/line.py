@@ -16,11 +16,11 @@ from . import none, some
 from .value import POINTS_A_SECOND, Diagram, Member
 
 CELLS = 24                              # of the range, at first
-FINEST = 1 << 14                        # A cell with a torus is left out if so many fill the range.
+FINEST = 1 << 14                        # A cell of this part of the range with a torus is left out.
 ROUND, LEAST = 8, Fraction(1, 16)       # cells of a round, none of which is much less urgent
 FIRST_POINTS = {1: 1 << 15, 2: 1 << 18}     # of the first try at a cell, by the number of angles
 DOUBT = Fraction(1, 2)                  # of its weight, where the middle of a cell is not excluded
-EDGE = {1: 32, 2: 256}                  # A neighbour of excluded values is so much more urgent.
+EDGE = {1: 32, 2: 256}                  # A neighbour of excluded values is more urgent by this.
 Hint = Tuple[Fraction, Tuple[none.Point, ...]]  # a value, and the x* over which it is excluded
 NEAREST = 8                             # x* of neighbours that are suggested for a cell
 
@@ -35,7 +35,7 @@ class Cell(NamedTuple):
     points
         Of the next try at its middle.
     weight
-        Its width counts so much; 0 for the whole range, which is tried first.
+        A factor of its width; 0 for the whole range, which is tried first.
     """
 
     low: Fraction
@@ -65,7 +65,7 @@ def search(diagram: Diagram, filling, points: int, tell) -> None:
     filling : prover.workers.Filling
         Its workers do the tasks.
     points
-        The search ends when the diagram has so many points.
+        The search ends when the diagram has this number of points.
     tell
         tell(text) is called with a line about each proof, as soon as it is found.
     """
@@ -144,7 +144,7 @@ class _Line:
         return first() or second() or self._cells(True)
 
     def call(self, task, most: int) -> Tuple[Any, ...]:
-        """The function that does a task within so many points, and its arguments."""
+        """The function that does a task within `most` points, and its arguments."""
         if isinstance(task, some.Task):
             return some.attempt, self.diagram.over((task.ends,)), task
         family = self.diagram.over(((task.low, task.high),))

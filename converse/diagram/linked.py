@@ -30,10 +30,10 @@ LOOK_CUTS = {1: 16, 2: 24}              # of the tree over the first x*
 RINGS, FINE_RINGS = ([Fraction(step, 1000) for step in steps] for steps in (
     (16, 32, 64, 128, 256, 8, 4), (*range(8, 136, 8), 256)))    # radians, between x*; of one angle
 ENOUGH = 1000                           # points: an x* that excludes a cluster so cheaply is good
-LEVEL_FACTOR = 8                        # x* are tried with so many times more points each time,
-FAR_FACTOR = {1: 4, 2: 8}               # those that are not suggested with so many times fewer.
+LEVEL_FACTOR = 8                        # x* are tried with this factor more points each time,
+FAR_FACTOR = {1: 4, 2: 8}               # those that are not suggested with this factor fewer.
 RANGE_FACTOR = 16                       # points of a range, by those of a try at its ends
-TREE_POINTS, LINK_POINTS = 1000, 20000  # What costs as much as so many points: to set up a tree,
+TREE_POINTS, LINK_POINTS = 1000, 20000  # the costs of setting up a tree,
                                         # and the bounds of a link.
 
 

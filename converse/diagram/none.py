@@ -32,12 +32,12 @@ LEAST_STEP = {1: 0.003, 2: 0.02}        # radians, by which x* is moved
 BASINS, CHOICES = 3, 6                  # x* that are improved; that are then tried to the end
 HINTS = 3                               # x* of neighbours that are tried first, each alone
 RANGE_FACTOR = 4                        # points of a range over one x*, by those of its middle
-NARROW = Fraction(1, 8)                 # If one x* excludes so much of a cell, the cell is halved.
+NARROW = Fraction(1, 8)                 # If one x* excludes this part of a cell, it is halved.
 SCALE = 10 ** 4                         # x* has four decimals
 
 
 class Outcome(NamedTuple):
-    """What became of a cell.
+    """The result of a try at a cell.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ def exclude(family: SymplecticMap, hints: Sequence[Point], points: int, most: fl
         None if it was stopped.  It tells of more points than `most` if more are needed.
     """
     def part(share):
-        """The problem over so much of the range, about its middle."""
+        """The problem over this share of the range, about its middle."""
         low, high = family.ranges[0]
         ends = [(low + high + sign * share * (high - low)) / 2 for sign in (-1, 1)]
         return Problem.of(family.at(**{family.names[0]: ends}))

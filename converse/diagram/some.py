@@ -3,8 +3,8 @@
 Existence is not monotone in a parameter: tori break up, and come back.  So values of a grid are
 looked at, then values between those where a regular orbit is seen and those where none is.  Values
 that are seen next to each other make a run.  In each run a torus is proved, and then others nearer
-to both ends of the run; and with one angle tori for every value between proved ones.  What is seen
-is floating point; the checker verifies each certificate.
+to both ends of the run; and with one angle tori for every value between proved ones.  Orbits
+are seen in floating point; the checker verifies each certificate.
 """
 
 import itertools
@@ -40,7 +40,7 @@ BORDERS, LOOKS, PROOFS = 2, 2, 1        # of a round
 
 
 RANGES = Fraction(1), Fraction(1, 2), Fraction(1, 4)    # parts between proved tori, that are tried,
-LATER = 16                              # so many times less urgent than ends of runs of that width
+LATER = 16                              # and this factor less urgent than ends of runs so wide
 
 
 class _Stopped(Exception):
@@ -65,7 +65,7 @@ class Task(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What became of a task: its cost in points of orbits; the rotation vector of the most regular
+    """The result of a task: its cost in points of orbits; the rotation vector of the most regular
     orbit, or None; the torus, or None."""
 
     points: int
@@ -143,7 +143,7 @@ class Runs:
             "range %s %s" % ends for ends in sorted(self.ranges)]
 
     def round(self, seconds: float = math.inf) -> List[Task]:
-        """What is done next: looks at a grid, and as soon as a torus is seen a try to prove one;
+        """The next tasks: looks at a grid, and as soon as a torus is seen a try to prove one;
         then tries, and looks.
 
         seconds -- No try may take more, nor may all looks."""

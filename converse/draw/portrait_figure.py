@@ -18,7 +18,7 @@ ORBITS, STEPS = 80, 800                # of the map, that are drawn
 CURVE = 4000                            # points of a circle that is proved
 TURN = 2 * math.pi
 COLOUR = 0.50, 0.66, 0.83               # where no circle passes: the less is undecided, the fuller
-APART = 9                               # lines are drawn so many times narrower than columns
+APART = 9                               # lines are narrower than columns by this factor
 SHADES = 8                              # of COLOUR, so that a file is small
 DPI = 130                               # of the orbits and circles in a file of vectors
 

@@ -31,8 +31,8 @@ QUARTERS = ("sin", 1), ("cos", 1), ("sin", -1), ("cos", -1)     # sin(y + n pi/2
 
 
 class Term(NamedTuple):
-    """What a wave adds to -V over a patch: (p + sum of t[m] parts[m]) sin(k.y + pi phase), with all
-    t[m] from -1 to 1."""
+    """The term of a wave in -V over a patch: (p + sum of t[m] parts[m]) sin(k.y + pi phase), with
+    all t[m] from -1 to 1."""
 
     k: Tuple[int, ...]
     phase: Fraction

@@ -106,7 +106,7 @@ def symmetric(problem: Problem) -> bool:
 
 
 def _sums(terms):
-    """What the amplitudes of waves with the same k and phase add up to, and their parts."""
+    """The sums of the amplitudes of waves with the same k and phase, and of their parts."""
     sums = {}
     for k, phase, p, parts in terms:
         before = sums.get((k, phase % 2), (0,) * (1 + len(parts)))

@@ -130,7 +130,7 @@ class Counts:
 
     @property
     def decided(self) -> int:
-        """How many prisms are leaves, but for linked ones."""
+        """The number of leaves that are not linked."""
         return self.proved + self.symmetric + self.undecided
 
     def __add__(self, other):
@@ -167,7 +167,7 @@ class Grown:
     """A part of a tree: nodes, and cells that are yet to be decided.
 
     text: the nodes in preorder; a ? stands for each of the cells, but not for those at the end.
-    steps: the lengths of their orbits, if this is what one search has grown.
+    steps: the lengths of their orbits, if one search has grown it.
     counts: the statistics, in which nodes that were taken up do not count.
     cells: in preorder, each (index, cuts, hint): see cv_cell in csrc/converse.h.
     examined: the share of parameters and angles that lies in its leaves.
@@ -378,7 +378,7 @@ class Search:
         return True
 
     def view(self, whole=False):
-        """What has been grown by now; without its text and cells, unless it is wanted whole."""
+        """The tree as grown by now; without its text and cells, unless it is wanted whole."""
         view = ffi.gc(ffi.new("cv_view *"), lib.cv_forget_view)
         check(lib.cv_look(self.handle, whole, view))
         text = ffi.unpack(view.tree, view.length).decode("ascii") if view.length else ""
@@ -390,7 +390,7 @@ class Search:
             view.examined, bool(view.finished), bool(view.needs_long), view.points)
 
     def grow(self, cells=None, leaves=MANY, points=math.inf, threads=1, look=bool):
-        """What becomes of these cells, or of those that are yet to be decided, when work() ends."""
+        """The trees of these cells, or of those that are yet to be decided, when work() ends."""
         if cells is not None:
             self.restart(UNTRIED * len(cells), cells)
         self.work(threads, look, leaves, points)

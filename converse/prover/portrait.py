@@ -189,7 +189,7 @@ class Portrait(Kept):
         return len(self.found) == len(self.stars)
 
     def report(self, file: Optional[Path] = None) -> str:
-        """What is proved, in words.
+        """The proved statement, in words.
 
         Parameters
         ----------

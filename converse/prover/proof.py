@@ -50,7 +50,7 @@ class Tree:
 
     @cached_property
     def undecided(self) -> Dict[Tuple[int, ...], int]:
-        """How many undecided leaves have so many cuts along each axis."""
+        """The number of undecided leaves, by the cuts along each axis."""
         return Counter(cuts for kind, (_, cuts) in tree.cells(self.text) if kind == "U")
 
 

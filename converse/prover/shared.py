@@ -18,7 +18,7 @@ PIECE = re.compile(r"[^?]+\?*|\?+")     # nodes, and the untried prisms that fol
 
 def settled(pieces, stubborn):
     """Parts that follow each other, as Grown; those at the beginning of which nothing is left to do
-    are one.  What lies beyond an undecided prism that ends the search does not count."""
+    are one.  Prisms beyond an undecided one that ends the search do not count."""
     first, rest = Grown(), []
     for piece in pieces:
         end = -1 if stubborn else piece.text.find("U")
@@ -111,7 +111,7 @@ class Shared:
 
 
 def grow(task, cells, seconds, ratio):
-    """What cells become in some seconds.  A worker calls it."""
+    """The trees of cells after some seconds.  A worker calls it."""
     began, search = time.monotonic(), native.Search(task)
     search.work(0, bool)
     now = time.monotonic()

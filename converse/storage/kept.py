@@ -51,7 +51,7 @@ class Kept:
 
     @classmethod
     def load(cls: Type[Result], path: Path) -> Result:
-        """Reads a file that save() or a run wrote.  What it claims is believed; verify() and
+        """Reads a file that save() or a run wrote.  Its claims are believed; verify() and
         converse-check do not believe it.
 
         Parameters

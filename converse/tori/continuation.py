@@ -32,7 +32,7 @@ USEFUL, STALLED = 1e-7, 1e-12   # Newton's method may end at the first; at the s
 ENLARGED = 8                # This often the number of modes is raised.
 HISTORY = 4                 # The next torus is extrapolated from the last HISTORY ones.
 TOO_LARGE = "too large"
-FRAMED = 1 << 11            # On a mesh of so many points the frame is chosen.
+FRAMED = 1 << 11            # points of the mesh on which the frame is chosen
 # The torus of an orbit begins with modes up to REACH, by the number of angles.  Where Newton's
 # method stalls, it has GROWTH times as many in each direction.  It is given up if the error, which
 # is at most SEEN, does not become DOWN times as large in WEARY rounds.
@@ -137,7 +137,7 @@ class Way:
                  points: Optional[int] = None) -> Union[Found, float]:
         """The torus at the end of the way on which an orbit lies, in modes without which Newton's
         method stalls: `finished` adds the others.  Where there is none, the least error that is
-        left on meshes of so many points; infinity: Newton's method fails."""
+        left on meshes of these sizes; infinity: Newton's method fails."""
         n, amplitude = self.potential.dimension, self.amplitude(1.0)
         k, c = orbits.series(orbit, self.rotation.floats, REACH[n])
         if n == 2:

@@ -40,7 +40,7 @@ class Work:
     time_limit
         Seconds from now on, after which no step begins.
     most
-        No step begins that would take the estimates of all steps above so many seconds.
+        No step begins that would take the estimates of all steps above this, in seconds.
 
     Attributes
     ----------
@@ -56,8 +56,7 @@ class Work:
         self.most, self.spent = most, 0.0
 
     def __call__(self, step: str, seconds: float = 0.0, later: float = 0.0) -> None:
-        """Begins a step of about so many seconds, which is in vain without later ones of so many.
-        """
+        """Begins a step of about `seconds`, which is in vain without the later ones."""
         if time.monotonic() >= self.end:
             raise TimeIsUp("the %g seconds of the time limit are over; the next step was: %s"
                            % (self.limit, step))

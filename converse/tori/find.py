@@ -24,10 +24,10 @@ from .torus import Torus, family
 
 __all__ = ["NotFound", "find"]
 
-ENOUGH = 3                  # From so many tori the one is chosen that needs the fewest modes.
+ENOUGH = 3                  # Among this number of tori the one with the fewest modes is chosen.
 SMALL = 1 << 15             # Points of the mesh on which the vectors of two angles are compared.
-NEAR = 6                    # Rotation vectors are looked for near so many orbits of two angles.
-SMOOTHEST = 4               # Of so many of them a torus is made.
+NEAR = 6                    # orbits of two angles near which rotation vectors are looked for
+SMOOTHEST = 4               # vectors of which a torus is made
 APART = 3e-4                # Of vectors that differ by less, in turns, the best is tried.
 NEEDED = {1: 1.0, 2: 0.65}  # About this part of the planned modes is left, by the number of angles.
 ROUNDS = 3                  # This often the number of modes is chosen.

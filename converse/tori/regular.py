@@ -51,7 +51,7 @@ WITHIN, NEIGHBOURS = Fraction(1, 1000), 8
 WALK, WALKED = 10, 1 << 14               # steps to a rotation vector, points of a half
 SEEN = 24                               # |k_i| up to which the decay of their modes is seen
 FAR = 0.003                             # |k.omega - m| |k|^2 is larger for good vectors.
-APART = 3e-3                            # Vectors that are listed differ by so much.
+APART = 3e-3                            # Vectors that are listed differ by this.
 CHAOTIC = 1e-5                          # Orbits that change more are not listed.
 
 

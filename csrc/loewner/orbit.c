@@ -168,7 +168,7 @@ INLINE void set_remainder(point *next, const point *q)
    f = f(o)/d(o) + e + (beta - 1/d(o) - d) r.
 
    rem, force and d are those of O r, O f and O d O', O as in set_axes, for which the same holds
-   with O e, and with O beta O' for beta.  The last bracket is rounding.  What is off in beta
+   with O e, and with O beta O' for beta.  The last bracket is rounding.  An error of beta
    (waves.h: evaluate) makes u (3 + (7 + W) S) in an element of O beta O', as the rows of O have
    length 1, and the length of k is |k| at most.  along_axes loses 10 u of sums below 2 + S, and the
    difference u of that: in all u (25 + (18 + W) S), where 2 err_beta are (24 + 2 N + 2 W) u (1 +
