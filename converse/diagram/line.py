@@ -10,7 +10,7 @@ what is found does not depend on how many are done at a time.
 
 import itertools
 from fractions import Fraction
-from typing import Any, Dict, List, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 
 from . import none, some
 from .value import POINTS_A_SECOND, Diagram, Member
@@ -72,13 +72,14 @@ def search(diagram: Diagram, filling, points: int, tell) -> None:
     line = _Line(diagram)
     while diagram.points < points and not filling.late:
         tasks, keys = line.round(points), itertools.count()
+        calls = [line.call(task) for task in tasks]     # before any of them is done
         results, taken = {}, []         # type: Dict[int, Any], List[int]
         if not tasks:
             break
 
         def next_task():
             key, left = next(keys), points - diagram.points
-            return (key, *line.call(tasks[key], left)) if key < len(tasks) and left > 0 else None
+            return (key, *calls[key](left)) if key < len(tasks) and left > 0 else None
 
         def record():
             key = len(taken)
@@ -143,12 +144,14 @@ class _Line:
             self._cells, tori)
         return first() or second() or self._cells(True)
 
-    def call(self, task, most: int) -> Tuple[Any, ...]:
-        """The function that does a task within `most` points, and its arguments."""
+    def call(self, task) -> Callable[[int], Tuple[Any, ...]]:
+        """By the most points that a task may take, the function that does it, and its arguments."""
         if isinstance(task, some.Task):
-            return some.attempt, self.diagram.over((task.ends,)), task
+            torus = some.attempt, self.diagram.over((task.ends,)), task
+            return lambda most: torus
         family = self.diagram.over(((task.low, task.high),))
-        return none.exclude, family, self._near(task), task.points, most
+        cell = none.exclude, family, self._near(task), task.points
+        return lambda most: (*cell, most)
 
     def take(self, task, outcome, most: int) -> Optional[Member]:
         """Records what became of a task, and returns what it adds to the diagram.  None: it was not

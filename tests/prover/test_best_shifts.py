@@ -13,6 +13,7 @@ from converse import Problem, prove
 from converse.model.map import SymplecticMap
 from converse.model.region import folds
 from converse.prover import native, starts
+from converse.prover.links import corners, crests
 from converse.prover.settings import Settings
 from converse.prover.shifts import STEPS, best_shifts
 
@@ -109,11 +110,12 @@ def test_an_angle_that_is_not_felt():
 
 def test_where_the_waves_bend_least():
     problem = Problem(SymplecticMap([(1, 0), (0, 1)], ["0.3", "-0.2"], [["0.1", 0], [0, "0.1"]]))
-    signs, weakest = starts._weakest(problem)
+    _, signs = min(zip(crests(problem), corners(problem)))
+    weakest = starts.at_corner(problem, signs)
     assert signs == (-1, 1) and weakest.amplitude == (Fraction("0.2"), Fraction("-0.1"))
-    assert starts._reaches(((5, 3, 0, 3, 0), (3, 2, 4, 2, 0)), signs)
-    assert not starts._reaches(((5, 3, 0, 2, 0), (3, 2, 4, 2, 0)), signs)
-    assert not starts._reaches(((5, 3, 1, 3, 0), (3, 2, 4, 2, 0)), signs)
+    assert starts.reaches(((5, 3, 0, 3, 0), (3, 2, 4, 2, 0)), signs)
+    assert not starts.reaches(((5, 3, 0, 2, 0), (3, 2, 4, 2, 0)), signs)
+    assert not starts.reaches(((5, 3, 1, 3, 0), (3, 2, 4, 2, 0)), signs)
 
 
 @pytest.mark.slow
