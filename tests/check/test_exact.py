@@ -222,13 +222,13 @@ def lane_quotients(names, draw):
 def ends_quotients(names, draw):
     """add_ends: where the lanes meet, and the tails; and bound."""
     sums, U, l = some_sums(names, draw, 4)
-    one, n, lanes = 16 << U, [], []
+    one, n, lanes, least = 16 << U, [], [], draw.choice((0, 1))     # least: as much as is rounded off
     for _ in "01":
         n.append([[whole(draw, 1 << U // 2, (1, -1)) for _ in "01"]
                   for _ in range(draw.randint(0, 3))])
         lanes.append(types.SimpleNamespace(
-            first_columns=[[whole(draw, one // 4) for _ in "01"] for _ in "01"],
-            first_rest=[draw.choice((0, 1, one // 4)) for _ in "01"]))
+            first_columns=[[whole(draw, least or one // 4, (-1, 1)) for _ in "01"] for _ in "01"],
+            first_rest=[draw.choice((0, 15, one // 4)) if not least else 15 for _ in "01"]))
     if not any(any(x) for lane in n for x in lane):
         return
     size = draw.choice((0, 1, 1)) << U
@@ -257,7 +257,7 @@ def ends_quotients(names, draw):
 
 QUOTIENTS = {"step": (step_quotients, 900, 0.9), "errors": (errors_quotients, 300, 0.8),
              "wave": (wave_quotients, 1500, 0.9), "lane": (lane_quotients, 600, 0.4),
-             "ends": (ends_quotients, 300, 0.8)}
+             "ends": (ends_quotients, 1500, 0.8)}
 
 
 @pytest.mark.parametrize("name", QUOTIENTS)
