@@ -222,7 +222,8 @@ def lane_quotients(names, draw):
 def ends_quotients(names, draw):
     """add_ends: where the lanes meet, and the tails; and bound."""
     sums, U, l = some_sums(names, draw, 4)
-    one, n, lanes, least = 16 << U, [], [], draw.choice((0, 1))     # least: as much as is rounded off
+    one, n, lanes = 16 << U, [], []
+    least = draw.choice((0, 1))         # columns as small as what is rounded off
     for _ in "01":
         n.append([[whole(draw, 1 << U // 2, (1, -1)) for _ in "01"]
                   for _ in range(draw.randint(0, 3))])
