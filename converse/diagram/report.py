@@ -79,10 +79,10 @@ def _grounds(diagram, tori, file):
     else:
         yield "Open", "%s %% of the rectangle" % rounded_text(
             100 * _open_share(diagram), 3, up=True)
-    for each in diagram.seen:
-        yield "Seen", "%s: an orbit as of a torus, rotation %s" % (
-            box_words(diagram.names, [(x, x) for x in each.value]),
-            ", ".join("%.9g" % x for x in each.rotation))
+    for low, high in diagram.open if len(diagram.ranges) == 1 else []:
+        seen = [each for each in diagram.seen if low <= each.value[0] <= high]
+        if seen:
+            yield "Seen", _seen_words(*diagram.names, seen)
     tori = sum(member.rotation is not None for member in diagram.members)
     sides = ", and %d by one point of the torus each" % len(diagram.sides)
     yield "Proofs", "%d of no torus%s, %d of tori; %s points of orbits, %.0f s" % (
@@ -90,6 +90,17 @@ def _grounds(diagram, tori, file):
         format(diagram.points, ","), diagram.seconds)
     if diagram.sha256:
         yield "SHA-256", diagram.sha256
+
+
+def _seen_words(name, seen):
+    """The values of an open part at which a torus is seen, in words."""
+    values, rotations = [each.value[0] for each in seen], zip(*[each.rotation for each in seen])
+    if len(seen) == 1:
+        return "%s = %s: an orbit as of a torus, rotation %s" % (
+            name, exact_text(*values), ", ".join("%.9g" % x for x, in rotations))
+    return "%d values, %s from %s to %s: orbits as of tori, rotations %s" % (
+        len(seen), name, exact_text(values[0]), exact_text(values[-1]),
+        ", ".join("from %.6g to %.6g" % (min(turns), max(turns)) for turns in rotations))
 
 
 def _open_share(diagram):

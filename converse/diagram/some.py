@@ -40,7 +40,7 @@ BORDERS, LOOKS, PROOFS = 2, 2, 1        # of a round
 
 
 RANGES = Fraction(1), Fraction(1, 2), Fraction(1, 4)    # parts between proved tori, that are tried,
-LATER = 16                              # and this factor less urgent than ends of runs so wide
+LATER = 128                             # and this factor less urgent than ends of runs so wide
 
 
 class _Stopped(Exception):
@@ -175,12 +175,13 @@ class Runs:
         ends, open_parts = self._values(), self.diagram.open
         if not open_parts:
             return []
-        part = (open_parts[-1][1] - open_parts[0][0]) / PARTS[self.n]
+        end = open_parts[-1][1]
+        part, sparse = (end - open_parts[0][0]) / PARTS[self.n], (end - self.low) / PARTS[self.n]
         gaps: Tuple[List[Any], List[Any]] = ([], [])
         for a, b in zip(ends, ends[1:]):
             seen, middle = [end for end in (a, b) if self.looks.get(end)], nice(
                 (a + b) / 2, self.grain)
-            least = SPARSE * part if seen else part
+            least = SPARSE * sparse if seen else part
             if len(seen) == 1:
                 near = [abs(value - seen[0]) for value in self._proved()]
                 least = max(self.grain, SHARE * min(near, default=self.high - self.low))

@@ -23,7 +23,8 @@ def made():
         found.add(prove(found.over(((F(low), F(high)),))))
     for low, high in (("0.9", "0.9"), ("0.1", "0.2")):
         found.add(tori.prove(found.over(((F(low), F(high)),)), "golden"))
-    found.seen.append(Seen((F("0.93"),), (0.3819660112,)))
+    found.seen += [Seen((F(value),), (turns,)) for value, turns in (
+        ("0.3", 0.25), ("0.5", 0.24), ("0.93", 0.3819660112))]
     found.search.append("of no meaning here")
     found.points, found.seconds = 1234, 5.5
     return found
@@ -56,7 +57,8 @@ def test_the_report_states_the_theorem(made):
     assert "every k in [0.1, 0.2]; k = 0.9.\n" in text and "converse-check k.map" in text
     assert "omega = 0.618033988749... = [0; 1, 1, ...] (golden)" in text
     assert "Open       0 <= k < 0.1; 0.2 < k < 0.9; 0.9 < k < 1.05; 1.2 < k < 1.3\n" in text
-    assert "Seen       k = 0.93: an orbit as of a torus" in text
+    assert "Seen       k = 0.93: an orbit as of a torus, rotation 0.381966011\n" in text
+    assert "2 values, k from 0.3 to 0.5: orbits as of tori, rotations from 0.24 to 0.25\n" in text
     assert "Rotation   every k in [0.1, 0.2]; k = 0.9: omega = 0.618" in text
     nothing = Diagram.of(StandardMap((0, 2))).report()
     assert nothing.startswith("UNDECIDED") and "J' = J + k sin y.\n" in nothing
