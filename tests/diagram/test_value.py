@@ -78,7 +78,7 @@ def test_plain_data(made):
     data = made.to_dict()
     assert data["none"] == [["21/20", "6/5"], ["13/10", "inf"]]
     assert data["tori"][1] == {"range": ["9/10", "9/10"], "rotation": "t^2+t-1: t"}
-    assert data["parameters"] == {"k": ["0", "2"]} and data["seen"][0]["value"] == ["93/100"]
+    assert data["parameters"] == {"k": ["0", "2"]} and data["seen"][-1]["value"] == ["93/100"]
 
 
 def test_a_contradiction_is_an_error(made):
