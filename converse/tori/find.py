@@ -38,7 +38,7 @@ LARGEST = 1 << 23           # Points of the mesh times the degree are at most ab
 NARROWEST = 1e-5            # A piece of s is at least about this long.
 ALL = 0.93                  # A piece that could cover this part of the rest takes all of it.
 # The s that farthest() tries.
-RETREAT = tuple(Fraction(n, 16) for n in (16, 15, 14, 12, 8, 0, -8))
+RETREAT = tuple(Fraction(n, 8) for n in (8, 7, 6, 4, 0, -4))
 MOST_MARGIN = 1e100         # Coefficients times 2^bits are doubles on their way to integers.
 
 
