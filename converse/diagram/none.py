@@ -83,6 +83,10 @@ def exclude(family: SymplecticMap, hints: Sequence[Point], points: int, most: fl
         ends = [(low + high + sign * share * (high - low)) / 2 for sign in (-1, 1)]
         return Problem.of(family.at(**{family.names[0]: ends}))
 
+    def outcome(proof=None, used=()):
+        stopped = search.stopped and search.points <= most and not proof
+        return None if stopped else Outcome(search.points, proof, tuple(used))
+
     search, problem = _Search(part(0), points, stop, most), part(1)
     for xstars, alone in search.candidates(hints):
         costs, proof = search.cheapest(xstars), None
@@ -91,16 +95,15 @@ def exclude(family: SymplecticMap, hints: Sequence[Point], points: int, most: fl
             dearest = RANGE_FACTOR * max(points, costs[0][0])
             proof = search.proof(problem, used[0], dearest)
             if not proof and search.proof(part(NARROW), used[0], dearest):
-                return Outcome(search.points, None, tuple(used))
+                return outcome(None, used)
         elif not (alone or search.stopped):
             found, used = linked(search, search.problem, [*xstars[:1], *hints], points)
             used = used if found else []
         if used:
             if not proof:
                 proof, used = linked(search, problem, [*used, *hints], points)
-            return Outcome(search.points, proof, tuple(used))
-    stopped = search.stopped and search.points <= most
-    return None if stopped else Outcome(search.points, None, ())
+            return outcome(proof, used)
+    return outcome()
 
 
 class _Search(Growth):

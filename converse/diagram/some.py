@@ -37,10 +37,8 @@ EFFORTS = {1: (5, 20, 80), 2: (128, 512)}       # seconds that a try may take, a
 LEAST = {1: 2, 2: 20}                   # No try begins with less.
 POINT = 1e-4                            # seconds of a proof for each point of its mesh, at least
 BORDERS, LOOKS, PROOFS = 2, 2, 1        # of a round
-
-
-RANGES = Fraction(1), Fraction(1, 2), Fraction(1, 4)    # parts between proved tori, that are tried,
-LATER = 128                             # and this factor less urgent than ends of runs so wide
+RANGES = Fraction(1), Fraction(1, 2), Fraction(1, 4)    # shares of what is between proved tori
+LATER = 128                             # Ranges are less urgent than ends of runs by this factor.
 
 
 class _Stopped(Exception):
@@ -49,7 +47,7 @@ class _Stopped(Exception):
 
 class Task(NamedTuple):
     """A value to look at; with effort > 0 one to prove a torus at, or between `back` and it, within
-    so many seconds of work; with a certificate of a torus to begin from, `start`, tori are to be
+    `effort` seconds of work; with a certificate of a torus to begin from, `start`, tori are to be
     proved for every value between."""
 
     value: Fraction

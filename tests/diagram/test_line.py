@@ -1,5 +1,6 @@
 """The search along one parameter: the x* of a cell, the values with tori, and the order of work."""
 
+import itertools
 from fractions import Fraction as F
 
 import pytest
@@ -306,6 +307,18 @@ def test_no_search_takes_more_than_its_budget(jobs):
     work = line._Line(found)
     parts = sorted((cell.low, cell.high) for cell in work.cells)
     assert sum(high - low for low, high in [*parts, *found.none[1:-1]]) == F("0.1")
+
+
+def test_a_try_that_is_stopped_tells_nothing():
+    """Not even that the middle is excluded, and the cell is not: it is to be done anew."""
+    def tried(most):
+        calls = itertools.count()
+        return none.exclude(cosines(K1=("0.6", "0.65")), [("1.8", "0")], 20000,
+                            stop=lambda: next(calls) >= most)
+
+    whole = tried(10 ** 6)
+    assert whole.xstars and not whole.proof and tried(0) is None
+    assert all(found in (None, whole) for found in map(tried, range(1, 40)))
 
 
 def test_what_exceeds_the_budget_is_dropped(monkeypatch):
